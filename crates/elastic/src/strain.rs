@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Measure of the strain of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Strain {
     /// The symmetric part of the gradient of the displacement: linear elasticity, for strains and
     /// rotations that are small.

@@ -29,6 +29,7 @@ impl Support {
 
 /// Rayleigh damping, C = alpha M + beta K.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Rayleigh {
     /// Factor alpha of the mass (1/s): a mode of angular frequency w is damped by alpha/(2 w) of

@@ -6,10 +6,11 @@ use super::source::{ValidationError, nearest};
 use fretwork_core::laws::{Interface, Kind};
 use fretwork_core::process::circuit::{CircuitParameters, EjectionOutcome, Zone};
 use fretwork_core::view::RunView;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The account of grains between first bodies, contact and outside.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CircuitSpec {
     /// Names of the first bodies to which grains can belong. A grain belongs to a first body while
@@ -34,7 +35,7 @@ fn default_interval() -> u64 {
 }
 
 /// A region where grains are ejected.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ZoneSpec {
     /// Name.

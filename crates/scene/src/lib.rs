@@ -43,6 +43,7 @@ pub mod recorded;
 pub mod sample;
 pub mod sampling;
 pub mod scene_file;
+pub mod schema;
 pub mod shipped_materials;
 pub mod source;
 pub mod standard;

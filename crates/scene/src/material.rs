@@ -16,6 +16,7 @@ use super::quantity::hardness_in_pascal;
 use super::source::ValidationError;
 use super::units::{self, UnitError};
 use crate::case::slots::{BySlot, Field, FieldName, with_kinds};
+use schemars::JsonSchema;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::SerializeStruct;
@@ -23,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A number and its source.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sourced {
     /// Value.
@@ -42,7 +43,7 @@ pub struct Sourced {
 }
 
 /// Motion of a test of friction or wear.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum MeasuredMotion {
     /// To and fro, by less than the width of the contact.
     Fretting,
@@ -164,7 +165,7 @@ impl<'de> Deserialize<'de> for NumberSpec {
 }
 
 /// A material.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     /// Description.
@@ -267,11 +268,12 @@ impl Material {
 
 /// Parameters of laws for a kind of interface: slot, law, parameter. In the text each slot is a
 /// field with the keyword of its kind.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema)]
 pub struct InterfaceParameters {
     /// Description.
     pub doc: String,
     /// Parameters by slot and law.
+    #[schemars(with = "Option<String>")]
     pub slots: BySlot<BTreeMap<String, BTreeMap<String, Sourced>>>,
 }
 

@@ -2,10 +2,11 @@
 
 use super::case::Case;
 use super::source::{ValidationError, nearest};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A quantity, or several that belong together. "Up" is the last axis: y in 2D, z in 3D.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum MeasureSpec {
     /// Mass of the grains whose centres are above a level along an axis (kg; kg/m in 2D).
@@ -84,7 +85,7 @@ pub enum MeasureSpec {
 }
 
 /// Options of [`MeasureSpec::ThirdBody`].
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ThirdBodySpec {
     /// Prefix of the columns and files.
@@ -114,7 +115,7 @@ pub struct ThirdBodySpec {
 }
 
 /// Boundaries of a third body.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Extent {
     /// The mean heights of the faces of the first bodies.
     #[default]

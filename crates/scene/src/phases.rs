@@ -9,11 +9,12 @@ use fretwork_core::bodies::Dof;
 use fretwork_core::bodies::pressure::ServoTarget;
 use fretwork_core::step::control::{Changes, GravityDrive, Phase, Until};
 use fretwork_core::view::{RunSetup, RunView};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A phase. Quantities that it does not name keep their values.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhaseSpec {
     /// Name.
@@ -48,7 +49,7 @@ pub struct PhaseSpec {
 }
 
 /// A group of phases that runs several times in succession: taps, cycles.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Repeat {
     /// Name of the first phase of the group; the phase itself by default.
@@ -59,7 +60,7 @@ pub struct Repeat {
 }
 
 /// The degrees of freedom of a body with a new drive.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Redriven {
     /// Translation along x.

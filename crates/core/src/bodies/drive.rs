@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Motion of one degree of freedom of a first body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Dof {
     /// Free to move under contact forces, gravity and inertia.
     #[default]
@@ -37,6 +38,7 @@ pub enum Dof {
 
 /// A drive with its end time. Functions of time use the time of the case, not of the stage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Stage {
     /// Time at which the next stage takes over (s); `None` for the last stage.

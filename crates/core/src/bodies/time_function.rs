@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A function of time (s). [`super::path`] describes the motion of an imposed degree of freedom
 /// over a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum TimeFunction {
     /// A constant value.

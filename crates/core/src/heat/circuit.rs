@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// The source of the current.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Supply {
     /// A voltage (V).
     Voltage(f64),

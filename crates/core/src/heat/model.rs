@@ -13,6 +13,7 @@ use std::sync::Arc;
 /// Share of each kind of dissipated energy that becomes heat at its contact; the rest remains
 /// elsewhere (new surfaces, sound, stored plastic work).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct HeatShares {
     /// Share of the friction.
@@ -55,6 +56,7 @@ impl HeatShares {
 
 /// Split of the heat of a contact between its two sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Partition {
     /// The heat is split in proportion to the effusivities e = sqrt(k rho c), so that two
     /// half-spaces keep one surface temperature.

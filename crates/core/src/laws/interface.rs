@@ -99,6 +99,7 @@ impl LoadedLaw {
 
 /// When bonds are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum BondRule {
     /// Every contact within the alert distance at the first step.
     #[default]
@@ -111,6 +112,7 @@ pub enum BondRule {
 
 /// Opening at which a bond begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum BondOpening {
     /// The opening is zero: cement fills the gap, and the bodies cannot approach while the bond
     /// holds.

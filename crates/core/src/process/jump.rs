@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 /// Jumps over the cycles of a friction test: a computed cycle can represent many cycles, see
 /// [`crate::wear::jump`].
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct JumpSpec {
     /// Number of cycles computed one by one before the first jump.

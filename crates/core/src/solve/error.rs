@@ -78,6 +78,7 @@ use serde::{Deserialize, Serialize};
 
 /// How the residual is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Norm {
     /// Residuals relative to velocities and impulses of the contacts, combined with the global
     /// balance of work.

@@ -56,6 +56,7 @@ impl Options {
 
 /// The coupling of damage and opening.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Coupling {
     /// The step is solved with the damage at its start; damage grows at its end. First order in h.
     Explicit,

@@ -1,10 +1,11 @@
 //! Requested accuracy of a run, which then chooses step and tolerance itself.
 
+use schemars::JsonSchema;
 use serde::de::{MapAccess, Visitor, value::MapAccessDeserializer};
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// Result whose relative error is bounded.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum AccurateResult {
     /// Friction coefficient of the friction test; in a case without one the energy of friction, or
     /// forces where nothing is driven.
@@ -23,11 +24,13 @@ pub enum AccurateResult {
 /// Requested accuracy, and the bounds within which the run chooses its settings. `solver.tolerance`
 /// is the coarsest tolerance; `time.step` is the longest step where bodies move, and longer steps
 /// are used where nothing moves. A number alone is the share: `accuracy: 0.03`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct AccuracySpec {
     /// Share of the result by which step and tolerance together may change it.
+    #[schemars(default = "share")]
     pub share: f64,
     /// The result.
+    #[schemars(default)]
     pub of: AccurateResult,
     /// Smallest step (s); a sixty-fourth of `time.step` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -40,6 +43,7 @@ pub struct AccuracySpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest_tolerance: Option<f64>,
     /// Share of the cost of the run that repeated steps may take, by which it measures its error.
+    #[schemars(default = "effort")]
     pub effort: f64,
 }
 

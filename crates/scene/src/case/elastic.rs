@@ -4,11 +4,12 @@ use super::WearSpec;
 use super::half_space::{hurst, straight};
 use fretwork_core::bodies::Dof;
 use fretwork_elastic::{Rayleigh, Strain};
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// A body of finite elements; in 2D the strain is plane. Its density, Young's modulus and Poisson's
 /// ratio are those of its material.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElasticSpec {
     /// Name.
@@ -49,7 +50,7 @@ pub struct ElasticSpec {
 }
 
 /// The mesh of a deformable body.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum MeshSpec {
     /// A block with its sides along the axes. Its sides are the parts `left`, `right` (x),
@@ -100,7 +101,7 @@ pub enum MeshSpec {
 }
 
 /// The points of a block along an axis (m).
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LineSpec {
     /// The lowest.
@@ -123,7 +124,7 @@ pub struct LineSpec {
 }
 
 /// Columns of cells of a block that join in pairs with the distance from a side.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CoarsenSpec {
     /// The side, of which all cells are kept.
@@ -135,7 +136,7 @@ pub struct CoarsenSpec {
 
 /// A side of a block as part of a circle (2D), a sphere or a cylinder (3D), whose middle touches
 /// the flat side that it replaces.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RoundSpec {
     /// `top` or `bottom`.
@@ -148,7 +149,7 @@ pub struct RoundSpec {
 }
 
 /// A side of a block with heights over the flat side that it replaces.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshProfileSpec {
     /// `top` or `bottom`.
@@ -158,7 +159,7 @@ pub struct MeshProfileSpec {
 }
 
 /// Heights over a flat side.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum ProfileShape {
     /// A wave with a crest at the origin of the mesh.
@@ -198,7 +199,7 @@ pub enum ProfileShape {
 }
 
 /// A part of the boundary in a holder that does not rotate, see [`fretwork_elastic::Support`].
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SupportSpec {
     /// Name of the part.
@@ -229,7 +230,7 @@ pub struct SupportSpec {
 
 /// Contact surface of a deformable body. Where two such bodies meet, one of them must touch by its
 /// points.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum TouchSpec {
     /// The body does not touch.

@@ -2,11 +2,12 @@
 
 use super::elastic::some;
 use fretwork_elastic::Rayleigh;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Makes the grains of a material deformable: balls, polygons and polyhedra, from any source.
 /// Density, Young's modulus and Poisson's ratio are those of the material.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElasticGrainSpec {
     /// Name of the material in this case; its file has the properties `young` and `poisson`.

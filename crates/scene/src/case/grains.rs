@@ -2,10 +2,11 @@
 
 use super::shapes::ShapeSpec;
 use crate::sample::spec::{BlockWallSpec, CsvSpec, DepositSpec, StateSpec, VoronoiSpec};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Grains.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum GrainSpec {
     /// Balls, one by one.
@@ -93,7 +94,7 @@ pub enum GrainSpec {
 }
 
 /// One grain.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OneGrain {
     /// Centre (m).
@@ -117,7 +118,7 @@ fn half_circle() -> f64 {
 }
 
 /// The edges of a voussoir between its joints.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Edges {
     /// Arcs: mass and centre are those of a ring sector. The block makes contact at its joints
     /// only.
@@ -128,7 +129,7 @@ pub enum Edges {
 }
 
 /// One polygon: its corners, or a regular one.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OnePolygon {
     /// Position of the origin of its corners (m).
@@ -154,7 +155,7 @@ pub struct OnePolygon {
 }
 
 /// One polyhedron: a cuboid, the hull of its corners, or the hull of a mesh.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OnePolyhedron {
     /// Position of the origin of its corners (m); for a cuboid its centre.
@@ -186,7 +187,7 @@ pub struct OnePolyhedron {
 }
 
 /// One rigid union.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OneCluster {
     /// Position of the origin of its shapes (m).

@@ -3,12 +3,13 @@
 use super::elastic::{one, some};
 use super::{Side, WearSpec};
 use fretwork_core::bodies::{Dof, TimeFunction};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A body that is large compared with its contacts: its surface deforms as that of a half-space,
 /// instantaneously and without inertia. Young's modulus and Poisson's ratio are those of its
 /// material; in 2D the strain is plane.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HalfSpaceSpec {
     /// Name.
@@ -71,7 +72,7 @@ pub struct HalfSpaceSpec {
 }
 
 /// The cells of a surface along an axis (m).
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellSpec {
     /// Start of the cells (m).
@@ -83,7 +84,7 @@ pub struct CellSpec {
 }
 
 /// The shape of the surface of a half-space without load.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum HalfSpaceProfile {
     /// A plane.
@@ -139,7 +140,7 @@ pub enum HalfSpaceProfile {
 }
 
 /// Supports and drives of a half-space: fixed along each axis by default.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HolderSpec {
     /// Drive along x.
@@ -167,7 +168,7 @@ pub struct HolderSpec {
 
 /// How the cells of a half-space touch. Where two deformable bodies meet, one of them must touch by
 /// its points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum CellTouch {
     /// The middle of each cell touches balls, pieces and surfaces.
     Points,

@@ -1,13 +1,14 @@
 //! Heat and electric current of a case.
 
 use fretwork_core::heat::{HeatShares, Partition, Supply};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Heat of a case: initial temperatures, conversion of dissipated energy, and thermal behaviour of
 /// first bodies. Materials then need `conductivity` and `heat_capacity`; heat flows through the
 /// contacts of interfaces with a `transport` law.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct HeatSpec {
     /// Initial temperature of all bodies (K).
@@ -74,7 +75,7 @@ impl Default for HeatSpec {
 }
 
 /// Heat flow to surroundings, proportional to the difference of temperature.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConvectionSpec {
     /// Heat transfer coefficient (W/(m^2 K)).
@@ -84,7 +85,7 @@ pub struct ConvectionSpec {
 }
 
 /// Thermal behaviour of a first body.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BodyHeatSpec {
     /// Store of its heat: `Fixed` (the default), `Insulated`, `Lumped(...)`, `HalfSpace(...)`, or
@@ -111,7 +112,7 @@ fn is_zero(x: &f64) -> bool {
 }
 
 /// Convection at a face of a lumped body, or at the surface of a half-space.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FaceSpec {
     /// Heat transfer coefficient (W/(m^2 K)).
@@ -123,7 +124,7 @@ pub struct FaceSpec {
 }
 
 /// Store of the heat of a first body.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub enum StoreSpec {
     /// The temperature of the body is constant.
     #[default]
@@ -146,7 +147,7 @@ pub enum StoreSpec {
 
 /// Boundary conditions of a body of finite elements, by the names of its parts; no heat flows
 /// through the rest, except at contacts.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MeshHeatSpec {
     /// Temperatures of parts with a fixed temperature (K).
@@ -161,7 +162,7 @@ pub struct MeshHeatSpec {
 }
 
 /// A half-space below each piece of a surface.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DepthSpec {
     /// Number of pieces along x.
@@ -190,7 +191,7 @@ pub struct DepthSpec {
 }
 
 /// An electric current between two first bodies.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElectricSpec {
     /// Name of the body that the current enters.

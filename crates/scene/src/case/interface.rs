@@ -3,6 +3,7 @@
 use super::slots::{BySlot, Field, FieldName, with_kinds};
 use crate::material::NumberSpec;
 use fretwork_core::laws::{BondOpening, BondRule, Kind};
+use schemars::JsonSchema;
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::{Error as _, SerializeStruct};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -15,7 +16,7 @@ pub type SlotValues = BySlot<BTreeMap<String, NumberSpec>>;
 /// The law between two materials: a slot for each kind of law, each with the name of a plugin. In
 /// the text each slot is a field with the keyword of its kind: `contact: "coulomb", wear:
 /// "archard"`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, JsonSchema)]
 pub struct InterfaceSpec {
     /// Name.
     pub name: String,
@@ -24,21 +25,27 @@ pub struct InterfaceSpec {
     /// File in `materials/` with parameters of laws.
     pub parameters_from: Option<String>,
     /// Laws by slot; the slot [`Kind::CONTACT`] must have one.
+    #[schemars(with = "Option<String>")]
     pub laws: BySlot<String>,
     /// Parameters given here, which take precedence over those of the file.
+    #[schemars(with = "Option<String>")]
     pub parameters: SlotValues,
     /// Tables of the laws that read one: files relative to that of the case.
+    #[schemars(with = "Option<String>")]
     pub tables: BySlot<String>,
     /// When bonds are made.
+    #[schemars(default)]
     pub bonds: BondRule,
     /// Largest gap at which a bond forms (m), at most the alert distance, which is the default.
     pub bonds_within: Option<f64>,
     /// Opening at which bonds begin.
+    #[schemars(default)]
     pub bond_opening: BondOpening,
     /// Time under compression (s) after which a contact forms a bond, including after an earlier
     /// bond broke.
     pub healing: Option<f64>,
     /// Factor of the contact's area, see `AreaRule`.
+    #[schemars(default = "one")]
     pub area_factor: f64,
 }
 

@@ -46,11 +46,12 @@ use fretwork_core::solve::error::Norm;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::Coupling;
 use fretwork_core::step::control::GravityDrive;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A case, as RON. Every number can be changed with `--set key.path=value`.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
     /// Title.
@@ -151,7 +152,7 @@ pub struct Case {
 }
 
 /// Time step and end of the run.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimeSpec {
     /// Time step h (s).
@@ -177,7 +178,7 @@ fn half() -> f64 {
 }
 
 /// Periodic lengths (m).
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PeriodicSpec {
     /// Along x.
@@ -192,7 +193,7 @@ pub struct PeriodicSpec {
 }
 
 /// Detection distances (m); by default fractions of the smallest radius.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DetectionSpec {
     /// Distance below which pairs are contacts.
@@ -204,7 +205,7 @@ pub struct DetectionSpec {
 }
 
 /// Options of the solver.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SolverSpec {
     /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`;
@@ -251,7 +252,7 @@ impl Default for SolverSpec {
 }
 
 /// A first body.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySpec {
     /// Name.
@@ -281,7 +282,7 @@ pub struct BodySpec {
 }
 
 /// Degrees of freedom of a first body.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct DofSpec {
     /// Translation along x.
@@ -323,7 +324,7 @@ impl Default for DofSpec {
 }
 
 /// A friction test: the rubbed body, the axis of sliding and the axis of the load.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionSpec {
     /// Name of the body.
@@ -348,7 +349,7 @@ fn axis_y() -> usize {
 }
 
 /// A biaxial test of the grains between four flat walls (2D).
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BiaxialSpec {
     /// Names of the walls on the low and high side of the axis along which the sample is loaded.
@@ -361,7 +362,7 @@ pub struct BiaxialSpec {
 }
 
 /// Output of a run.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputSpec {
     /// Number of pictures over the run.
@@ -392,7 +393,7 @@ pub struct OutputSpec {
 }
 
 /// Interval of checkpoints.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub enum Checkpoint {
     /// Interval of wall time (s); longer if checkpoints would take more than 5 % of the time.
     Seconds(f64),

@@ -1,10 +1,11 @@
 //! Shapes of first bodies.
 
+use schemars::JsonSchema;
 use serde::ser::SerializeTuple;
 use serde::{Deserialize, Serialize};
 
 /// Side of a profile on which the solid is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Side {
     /// Solid below, open above: a rail.
     Below,
@@ -13,7 +14,7 @@ pub enum Side {
 }
 
 /// A profile of a standard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum StandardName {
     /// Wheel, EN 13715: S1002, flange 28 mm high and 32.5 mm thick.
     S1002,
@@ -22,7 +23,7 @@ pub enum StandardName {
 }
 
 /// A part of a first body.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum ShapeSpec {
     /// Half-space, solid behind the plane through `at` (m); `normal` points to the open side.

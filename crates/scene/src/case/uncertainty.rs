@@ -1,9 +1,10 @@
 //! Estimate of a run's own error: the run repeats some of its steps with finer settings.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Repetitions by which a run estimates its error.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct UncertaintySpec {
     /// Number of times in the run at which steps are repeated; 0 for no estimate. By default as

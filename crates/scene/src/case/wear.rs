@@ -1,9 +1,10 @@
 //! Specification of a first body's wear.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Wear of a first body.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WearSpec {
     /// Depth at which a surface is worn through and the run stops (m).

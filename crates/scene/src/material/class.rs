@@ -1,9 +1,10 @@
 //! Classes of materials, and between which values their properties lie.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A class of materials.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum MaterialClass {
     /// Carbon, alloyed, stainless and tool steels.
     Steel,

@@ -1,9 +1,10 @@
 //! Specification of samples that are generated or read from files.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A loose random deposit in a box, without overlaps; see [`super::deposit`].
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DepositSpec {
     /// Material.
@@ -19,7 +20,7 @@ pub struct DepositSpec {
 }
 
 /// Voronoi cells that fill a box side by side; see [`super::voronoi`] and [`super::voronoi_space`].
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VoronoiSpec {
     /// Material.
@@ -43,7 +44,7 @@ pub struct VoronoiSpec {
 
 /// A wall of blocks in running bond: every second course begins and ends with half a block. In 3D
 /// it extends along x and z and is one block thick.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlockWallSpec {
     /// Material.
@@ -66,7 +67,7 @@ pub struct BlockWallSpec {
 }
 
 /// A distribution of sizes.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum SizeSpec {
     /// Uniform density of the radius.
@@ -96,7 +97,7 @@ pub enum SizeSpec {
 }
 
 /// Quantity by which a distribution weights grains.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum Counted {
     /// Number of grains.
     #[default]
@@ -107,7 +108,7 @@ pub enum Counted {
 
 /// Grains of a CSV file with the columns x, y (z in 3D), radius, and optionally velocity_x,
 /// velocity_y (velocity_z) and spin (spin_x, spin_y, spin_z in 3D).
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CsvSpec {
     /// Path relative to the case.
@@ -117,7 +118,7 @@ pub struct CsvSpec {
 }
 
 /// Grains of a state of another run, with their velocities and spins.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StateSpec {
     /// The run's `results.h5` or its folder, relative to the case.
@@ -130,7 +131,7 @@ pub struct StateSpec {
 }
 
 /// A state of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 pub enum FrameSpec {
     /// The last state.
     #[default]

@@ -21,6 +21,7 @@ use std::time::Instant;
 
 /// A way to solve a problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Method {
     /// Automatic choice.
     #[default]

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Time dependence of gravity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum GravityDrive {
     /// The case's gravity rotated by an angle (rad) about an axis: 0, 1 or 2, by default z, which
