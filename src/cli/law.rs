@@ -71,6 +71,19 @@ pub fn law(command: &LawCommand) -> Result<(), Failure> {
     }
 }
 
+/// The laws on the search path that can be opened.
+pub fn usable(path: &SearchPath) -> Vec<Plugin> {
+    let laws = path.laws();
+    path.test_loading(
+        laws.iter()
+            .map(|(kind, name, _)| (*kind, name.as_str(), None)),
+    );
+    let opened = laws
+        .iter()
+        .map(|(kind, name, place)| path.open_law(*kind, name, place));
+    opened.flatten().collect()
+}
+
 /// The laws with a name, or with kind/name.
 fn named(path: &SearchPath, name: &str) -> Result<Vec<Plugin>, Failure> {
     let (kind, name) = match name.split_once('/') {

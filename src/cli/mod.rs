@@ -1,9 +1,11 @@
-//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `cases`, `new`,
-//! `law`, `material`, `solve`, `study`, `fit`, `trade`.
+//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `case`, `cases`,
+//! `new`, `law`, `material`, `solve`, `study`, `fit`, `trade`, `completions`,
+//! `man`.
 //!
 //! Exit codes: 0 success; 1 the run failed, but what was computed is on disk; 2 invalid input.
 
 mod again;
+mod case;
 mod cases;
 mod check;
 mod compare;
@@ -22,6 +24,7 @@ mod patch;
 mod progress;
 mod report;
 mod run;
+mod shells;
 mod solve;
 mod study;
 mod trade;
@@ -90,6 +93,9 @@ enum Command {
     /// Shipped cases, studies, fits and patches: list them, copy one to change it
     #[command(subcommand)]
     Cases(cases::CasesCommand),
+    /// The format of cases: conversion to JSON, YAML and RON, the JSON Schema
+    #[command(subcommand, after_help = case::EXAMPLES)]
+    Case(case::CaseCommand),
     /// Make a case from what is known about a test
     #[command(subcommand)]
     New(new::NewCommand),
@@ -123,6 +129,14 @@ enum Command {
         after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/shear_cell_3d.ron --output friction_coefficient=5% --setting step --setting tolerance --budget 30m\n\ndocs/trade.md says how errors are tested and what the search does not explore."
     )]
     Trade(trade::TradeArgs),
+    /// Print the completions of a shell for this program
+    #[command(
+        after_help = "Example, in ~/.bashrc:\n  source <(fretwork completions bash)\n\ndocs/editors.md has the other shells."
+    )]
+    Completions(shells::CompletionsArgs),
+    /// Write the manual pages of this program
+    #[command(after_help = "Example:\n  fretwork man ~/.local/share/man/man1 && man fretwork-run")]
+    Man(shells::ManArgs),
     /// Internal: opens libraries in a separate process
     #[command(name = loading::TRY_LIBRARIES, hide = true)]
     TryLibraries(ChildArgs),
@@ -148,7 +162,7 @@ impl ChildArgs {
 /// The case and changes to it.
 #[derive(Args, Debug)]
 struct CaseArgs {
-    /// The case file (RON), or the name of a shipped case
+    /// The case file (RON, JSON or YAML), or the name of a shipped case
     #[arg(value_parser = cases::input(InputKind::Case))]
     case: PathBuf,
     /// Change a value of the case, e.g. time.step=1e-6 or interfaces.third_body.damage=mac
@@ -360,6 +374,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::ContactPatch(args) => contact_patch::contact_patch(&args),
         Command::Patch(args) => patch::patch(&args),
         Command::Cases(command) => cases::run(&command),
+        Command::Case(command) => case::run(&command),
         Command::New(command) => new::run(&command),
         Command::Law(command) => law::law(&command),
         Command::Material(command) => material::material(&command),
@@ -367,6 +382,8 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Study(command) => study::study(&command),
         Command::Fit(args) => fit::fit(&args),
         Command::Trade(args) => trade::trade(&args),
+        Command::Completions(args) => shells::completions(&args),
+        Command::Man(args) => shells::man(&args),
         Command::TryLibraries(args) => args.help(library::try_libraries),
         Command::CertifyInChild(args) => args.help(|| certify_requested(&built_in())),
     }

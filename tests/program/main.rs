@@ -10,6 +10,7 @@
 mod accuracy;
 mod another_run;
 mod bad_input;
+mod case_formats;
 mod certify;
 mod check_features;
 mod check_methods;
