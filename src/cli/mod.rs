@@ -1,5 +1,5 @@
-//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `case`, `cases`,
-//! `new`, `law`, `material`, `solve`, `study`, `fit`, `trade`, `completions`,
+//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `patch`, `case`,
+//! `cases`, `new`, `law`, `material`, `solve`, `study`, `fit`, `trade`, `lsp`, `completions`,
 //! `man`.
 //!
 //! Exit codes: 0 success; 1 the run failed, but what was computed is on disk; 2 invalid input.
@@ -14,6 +14,7 @@ mod ending;
 mod experiment;
 mod fit;
 mod law;
+mod lsp;
 mod material;
 mod measured;
 mod new;
@@ -129,6 +130,9 @@ enum Command {
         after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/shear_cell_3d.ron --output friction_coefficient=5% --setting step --setting tolerance --budget 30m\n\ndocs/trade.md says how errors are tested and what the search does not explore."
     )]
     Trade(trade::TradeArgs),
+    /// Serve an editor that edits cases: errors, completion, documentation (language server)
+    #[command(after_help = "Editors start it, see docs/editors.md.")]
+    Lsp(lsp::LspArgs),
     /// Print the completions of a shell for this program
     #[command(
         after_help = "Example, in ~/.bashrc:\n  source <(fretwork completions bash)\n\ndocs/editors.md has the other shells."
@@ -382,6 +386,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Study(command) => study::study(&command),
         Command::Fit(args) => fit::fit(&args),
         Command::Trade(args) => trade::trade(&args),
+        Command::Lsp(args) => lsp::serve(&args),
         Command::Completions(args) => shells::completions(&args),
         Command::Man(args) => shells::man(&args),
         Command::TryLibraries(args) => args.help(library::try_libraries),

@@ -54,6 +54,18 @@ pub fn answer_json(text: &str) -> Result<(), Failure> {
     delivered(write_out(&clean_json(text)))
 }
 
+/// Writes bytes of a protocol to standard output.
+///
+/// # Errors
+/// They cannot be written.
+pub fn send(bytes: &[u8]) -> Result<(), Failure> {
+    let all = |to: &mut dyn Write| to.write_all(bytes).and_then(|()| to.flush());
+    delivered(match TAKEN.get() {
+        Some(own) => all(&mut *own.lock().unwrap_or_else(|e| e.into_inner())),
+        None => all(&mut std::io::stdout().lock()),
+    })
+}
+
 /// Converts the result of writing an answer.
 ///
 /// # Errors

@@ -25,6 +25,7 @@ mod growth;
 mod half_space_page;
 mod heat;
 mod holders;
+mod language_server;
 mod law_drive;
 mod law_inputs;
 mod law_new;

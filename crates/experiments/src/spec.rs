@@ -30,8 +30,9 @@ pub trait Spec: DeserializeOwned {
 }
 
 impl<T: Spec> SpecFile<T> {
-    /// Reads a file, RON, JSON or YAML by the ending of its name, and checks everything that can be checked without a case. Numbers may have
-    /// units, `low: 5 um`, where the file gives values of a case.
+    /// Reads a file, RON, JSON or YAML by the ending of its name, and checks everything that can be
+    /// checked without a case. Numbers may have units, `low: 5 um`, where the file gives values of
+    /// a case.
     ///
     /// # Errors
     /// Returns an error with file, line and column.

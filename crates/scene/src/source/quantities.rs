@@ -1,5 +1,5 @@
-//! Numbers with units in a text, `step: 10 us`, and expressions that stand for numbers,
-//! `mass: "${rho * V}"`: each is replaced by what ron and the schema read, before the text is parsed.
+//! Numbers with units in a text, `step: 10 us`, and expressions that stand for numbers, `mass:
+//! "${rho * V}"`: each is replaced by what ron and the schema read, before the text is parsed.
 
 use std::ops::Range;
 

@@ -549,7 +549,8 @@ impl<'de> Deserializer<'de> for Writer<'_, '_> {
     forward_to_deserialize_any! { char bytes byte_buf }
 }
 
-/// How many entries the type took, and whether the key of the last one was written without its value.
+/// How many entries the type took, and whether the key of the last one was written without its
+/// value.
 #[derive(Clone, Copy, Default)]
 struct Progress {
     next: usize,
