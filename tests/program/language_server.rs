@@ -29,7 +29,7 @@ impl Client {
     fn start(folder: &TempFolder) -> Self {
         let mut server = Command::new(env!("CARGO_BIN_EXE_fretwork"))
             .args(["lsp", "--stdio"])
-            .current_dir(&folder)
+            .current_dir(folder)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()

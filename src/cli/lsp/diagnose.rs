@@ -3,7 +3,7 @@
 use super::Server;
 use super::document::Document;
 use crate::cli::observers;
-use crate::record::{RunError, check_names};
+use crate::record::check_names;
 use crate::scene::material::Material;
 use crate::scene::source::{Format, Source, Tree};
 use crate::scene::{InputError, LoadedCase, load_text};
@@ -35,11 +35,7 @@ pub fn diagnostics(server: &Server, document: &Document, whole: bool) -> Vec<Dia
 fn build(server: &Server, loaded: &LoadedCase) -> Result<(), InputError> {
     let built = loaded.build(&server.search)?;
     let observers = observers::all(loaded, built.simulation.view());
-    match check_names(loaded, &observers) {
-        Err(RunError::Input(error)) => Err(*error),
-        Err(other) => Err(InputError::about(loaded.path.display(), other.to_string())),
-        Ok(()) => Ok(()),
-    }
+    check_names(loaded, &observers)
 }
 
 fn material(path: &Path, text: &str) -> Result<(), InputError> {

@@ -123,7 +123,7 @@ impl Function {
             Rule::Same(f) => Ok(Amount { value: f(x), ..a }),
             Rule::Root(degree, f) => Ok(Amount {
                 value: f(x),
-                measure: a.measure.to_power(1.0 / degree),
+                measure: a.measure.raised_to(1.0 / degree),
             }),
             Rule::TwoAlike(_) | Rule::Ratio(_) if !a.measure.equals(&arguments[1].measure) => {
                 Err((1, "two values of the same dimension"))

@@ -216,7 +216,7 @@ impl Operation {
                 if !b.measure.equals(&Measure::NUMBER) {
                     return Err(Unfit::Exponent);
                 }
-                (x.powf(y), a.measure.to_power(y))
+                (x.powf(y), a.measure.raised_to(y))
             }
         };
         Ok(Amount { value, measure })

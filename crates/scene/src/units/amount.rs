@@ -98,7 +98,7 @@ impl Measure {
     }
 
     /// Returns the dimension of a power.
-    pub fn to_power(&self, exponent: f64) -> Self {
+    pub fn raised_to(&self, exponent: f64) -> Self {
         Self {
             powers: self.powers.map(|p| p * exponent),
             angle: self.angle && exponent == 1.0,
@@ -188,8 +188,8 @@ mod tests {
         assert_eq!(product.symbol().unwrap(), "N/m");
         // The speed of sound.
         let squared = of("Pa").combined(&of("kg/m^3"), -1.0);
-        assert!(squared.to_power(0.5).equals(&of("m/s")));
-        let root = of("Pa").to_power(0.5);
+        assert!(squared.raised_to(0.5).equals(&of("m/s")));
+        let root = of("Pa").raised_to(0.5);
         assert_eq!(root.symbol(), None);
         assert_eq!(root.in_words(), "in `kg^0.5 m^-0.5 s^-1`");
         assert_eq!(of("GPa").in_words(), "in `Pa`");
