@@ -5,25 +5,27 @@
 //! and writes it as the type asks for it. Where a value does not fit the type, it and what follows
 //! are written by their look; the reader of the RON text then says what is wrong, at its place.
 
-use std::cell::{Cell, RefCell};
-use std::ops::Range;
+mod access;
+mod out;
 
-use serde::de::value::{Error, StrDeserializer};
-use serde::de::{
-    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess,
-    VariantAccess, Visitor,
-};
-use serde::forward_to_deserialize_any;
-
-use super::item::{Item, ItemKind, Key, Text, is_word};
+use super::item::{Item, ItemKind, Key, is_word};
 use crate::quantity;
 use crate::source::source_map::SourceMap;
+use access::{Elements, Fields, Progress, Variant};
+use out::{Out, is_quantity};
+use serde::de::value::Error;
+use serde::de::{DeserializeOwned, Deserializer, Error as _, Visitor};
+use serde::forward_to_deserialize_any;
+use std::cell::{Cell, RefCell};
 
 /// Name by which ron asks for the text of a value as it is written.
 const RAW_VALUE: &str = "$ron::private::RawValue";
 
 /// Returns the RON text of a `T`, and where its parts are in the file.
-pub(super) fn write<T: DeserializeOwned>(file: &str, item: &Item) -> (String, SourceMap) {
+pub(in crate::source) fn write<T: DeserializeOwned>(
+    file: &str,
+    item: &Item,
+) -> (String, SourceMap) {
     let out = RefCell::new(Out {
         file,
         text: String::new(),
@@ -38,125 +40,6 @@ pub(super) fn write<T: DeserializeOwned>(file: &str, item: &Item) -> (String, So
     let _ = T::deserialize(writer);
     let out = out.into_inner();
     (out.text, out.map)
-}
-
-/// The text so far.
-struct Out<'f> {
-    file: &'f str,
-    text: String,
-    map: SourceMap,
-}
-
-impl Out<'_> {
-    /// Writes text that stands for bytes of the file.
-    fn push(&mut self, text: &str, span: &Range<usize>) {
-        self.text += text;
-        self.map.push_for(text.len(), span.clone());
-    }
-
-    /// Writes a number, which is mostly spelled as in the file.
-    fn number(&mut self, number: &str, span: &Range<usize>) {
-        match self.file[span.clone()].starts_with(number) {
-            true => self.verbatim(number, span.start),
-            false => self.push(number, span),
-        }
-    }
-
-    fn verbatim(&mut self, text: &str, at: usize) {
-        self.text += text;
-        self.map.push_from(text.len(), at);
-    }
-
-    fn quoted(&mut self, text: &Text, span: &Range<usize>) {
-        let escaped = text.content.replace('\\', "\\\\").replace('"', "\\\"");
-        self.push("\"", span);
-        match text.at.filter(|_| escaped.len() == text.content.len()) {
-            Some(at) => self.verbatim(&escaped, at),
-            None => self.push(&escaped, span),
-        }
-        self.push("\"", span);
-    }
-
-    /// Writes a text that is a number with a unit as that.
-    fn quantity(&mut self, text: &Text, span: &Range<usize>) {
-        match text.at {
-            Some(at) => self.verbatim(&text.content, at),
-            None => self.push(&text.content, span),
-        }
-    }
-
-    fn key(&mut self, key: &Key, quoted: bool) {
-        match quoted {
-            true => {
-                let content = key.name.clone();
-                self.quoted(&Text { content, at: None }, &key.span);
-            }
-            // What is no word is no field; the error of the reader is at its place.
-            false => {
-                let word: String = key
-                    .name
-                    .chars()
-                    .map(|c| match c.is_alphanumeric() {
-                        true => c,
-                        false => '_',
-                    })
-                    .collect();
-                let word = match word.starts_with(|c: char| c.is_ascii_digit()) || word.is_empty() {
-                    true => format!("_{word}"),
-                    false => word,
-                };
-                self.push(&word, &key.span);
-            }
-        }
-        self.push(": ", &key.span);
-    }
-
-    /// Writes a value by its look.
-    fn guess(&mut self, item: &Item) {
-        let span = &item.span;
-        match &item.kind {
-            ItemKind::Null => self.push("None", span),
-            ItemKind::Bool(value) => self.push(if *value { "true" } else { "false" }, span),
-            ItemKind::Number(number) => self.number(number, span),
-            ItemKind::Text(text) if is_quantity(&text.content) => self.quantity(text, span),
-            ItemKind::Text(text) => self.quoted(text, span),
-            ItemKind::List(items) => {
-                self.push("[", span);
-                for item in items {
-                    self.guess(item);
-                    self.push(", ", &item.span);
-                }
-                self.push("]", span);
-            }
-            ItemKind::Object(entries) => {
-                let capital = |(key, _): &(&Key, &Item)| {
-                    is_word(&key.name) && key.name.starts_with(char::is_uppercase)
-                };
-                if let Some((key, content)) = item.variant().filter(capital) {
-                    self.push(&key.name, &key.span);
-                    self.push("(", span);
-                    self.guess(content);
-                    self.push(")", span);
-                    return;
-                }
-                let fields = entries.iter().all(|(key, _)| is_word(&key.name));
-                let brackets = if fields { ["(", ")"] } else { ["{", "}"] };
-                self.push(brackets[0], span);
-                for (key, item) in entries {
-                    self.key(key, !fields);
-                    self.guess(item);
-                    self.push(", ", &item.span);
-                }
-                self.push(brackets[1], span);
-            }
-        }
-    }
-}
-
-/// Whether a text is a number with a unit, which RON writes without quotes.
-fn is_quantity(text: &str) -> bool {
-    let (number, all) = quantity::parts(text);
-    number > 0 && all > number && all == text.len()
 }
 
 /// Whether a text stands for a number: with a unit, or as an expression.
@@ -547,159 +430,4 @@ impl<'de> Deserializer<'de> for Writer<'_, '_> {
     }
 
     forward_to_deserialize_any! { char bytes byte_buf }
-}
-
-/// How many entries the type took, and whether the key of the last one was written without its
-/// value.
-#[derive(Clone, Copy, Default)]
-struct Progress {
-    next: usize,
-    key_written: bool,
-}
-
-/// Entries of an object, as the type asks for them.
-struct Fields<'a, 'f> {
-    entries: &'a [(Key, Item)],
-    out: &'a RefCell<Out<'f>>,
-    state: &'a Cell<Progress>,
-    quoted: bool,
-}
-
-impl<'de> MapAccess<'de> for Fields<'_, '_> {
-    type Error = Error;
-
-    fn next_key_seed<K: DeserializeSeed<'de>>(
-        &mut self,
-        seed: K,
-    ) -> Result<Option<K::Value>, Error> {
-        let next = self.state.get().next;
-        let Some((key, _)) = self.entries.get(next) else {
-            return Ok(None);
-        };
-        self.out.borrow_mut().key(key, self.quoted);
-        self.state.set(Progress {
-            next: next + 1,
-            key_written: true,
-        });
-        seed.deserialize(StrDeserializer::new(&key.name)).map(Some)
-    }
-
-    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Error> {
-        let next = self.state.get().next;
-        let item = next.checked_sub(1).and_then(|k| self.entries.get(k));
-        let (_, item) = item.ok_or_else(unfit)?;
-        self.state.set(Progress {
-            next,
-            key_written: false,
-        });
-        let found = seed.deserialize(Writer {
-            item,
-            out: self.out,
-            bare: false,
-        });
-        self.out.borrow_mut().push(", ", &item.span);
-        found
-    }
-}
-
-/// Elements of a list, as the type asks for them.
-struct Elements<'a, 'f> {
-    items: &'a [Item],
-    out: &'a RefCell<Out<'f>>,
-    next: &'a Cell<usize>,
-}
-
-impl<'de> SeqAccess<'de> for Elements<'_, '_> {
-    type Error = Error;
-
-    fn next_element_seed<T: DeserializeSeed<'de>>(
-        &mut self,
-        seed: T,
-    ) -> Result<Option<T::Value>, Error> {
-        let next = self.next.get();
-        let Some(item) = self.items.get(next) else {
-            return Ok(None);
-        };
-        self.next.set(next + 1);
-        let found = seed.deserialize(Writer {
-            item,
-            out: self.out,
-            bare: false,
-        });
-        self.out.borrow_mut().push(", ", &item.span);
-        found.map(Some)
-    }
-}
-
-/// A variant whose name is written, and its content.
-struct Variant<'n, 'a, 'f> {
-    name: &'n str,
-    content: Option<&'a Item>,
-    writer: Writer<'a, 'f>,
-}
-
-impl<'de, 'a, 'f> EnumAccess<'de> for Variant<'_, 'a, 'f> {
-    type Error = Error;
-    type Variant = Content<'a, 'f>;
-
-    fn variant_seed<V: DeserializeSeed<'de>>(
-        self,
-        seed: V,
-    ) -> Result<(V::Value, Content<'a, 'f>), Error> {
-        let name = seed.deserialize(StrDeserializer::<Error>::new(self.name))?;
-        let content = Content {
-            item: self.content,
-            writer: self.writer,
-        };
-        Ok((name, content))
-    }
-}
-
-/// The content of a variant.
-struct Content<'a, 'f> {
-    item: Option<&'a Item>,
-    writer: Writer<'a, 'f>,
-}
-
-impl<'a, 'f> Content<'a, 'f> {
-    /// Writes the content in the parentheses of the variant.
-    fn within<T>(self, write: impl FnOnce(Writer<'a, 'f>) -> Result<T, Error>) -> Result<T, Error> {
-        // A variant without its content is written as that.
-        let item = self.item.ok_or_else(unfit)?;
-        let (out, span) = (self.writer.out, &self.writer.item.span);
-        out.borrow_mut().push("(", span);
-        let found = write(Writer {
-            bare: true,
-            ..self.writer.of(item)
-        });
-        out.borrow_mut().push(")", span);
-        found
-    }
-}
-
-impl<'de> VariantAccess<'de> for Content<'_, '_> {
-    type Error = Error;
-
-    fn unit_variant(self) -> Result<(), Error> {
-        match self.item.map(|item| &item.kind) {
-            None | Some(ItemKind::Null) => Ok(()),
-            Some(_) => self.within(Writer::guess),
-        }
-    }
-
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Error> {
-        self.within(|writer| seed.deserialize(writer))
-    }
-
-    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
-        self.within(|writer| writer.tuple(visitor))
-    }
-
-    fn struct_variant<V: Visitor<'de>>(
-        self,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Error> {
-        self.within(|writer| writer.fields("", fields, visitor))
-    }
 }
