@@ -2,7 +2,7 @@
 
 use super::output::answer;
 use super::{Cli, Failure};
-use clap::{Args, CommandFactory};
+use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
 use std::path::PathBuf;
 
@@ -21,9 +21,20 @@ pub struct ManArgs {
     folder: PathBuf,
 }
 
+/// The command line without the commands that only the program calls, which completions would list.
+fn shown() -> Command {
+    let all = Cli::command();
+    let commands = all.get_subcommands().filter(|c| !c.is_hide_set()).cloned();
+    Command::new("fretwork")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about(all.get_about().cloned().unwrap_or_default())
+        .args(all.get_arguments().cloned())
+        .subcommands(commands)
+}
+
 pub fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
     let mut text = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "fretwork", &mut text);
+    clap_complete::generate(args.shell, &mut shown(), "fretwork", &mut text);
     answer(String::from_utf8_lossy(&text).trim_end())
 }
 
@@ -31,7 +42,7 @@ pub fn man(args: &ManArgs) -> Result<(), Failure> {
     let folder = args.folder.display();
     let failed = |e: std::io::Error| Failure::Failed(format!("{folder} cannot be written: {e}"));
     std::fs::create_dir_all(&args.folder).map_err(failed)?;
-    clap_mangen::generate_to(Cli::command(), &args.folder).map_err(failed)?;
+    clap_mangen::generate_to(shown(), &args.folder).map_err(failed)?;
     answer(&format!(
         "{folder}: pages of `man fretwork`, `man fretwork-run` and the others"
     ))

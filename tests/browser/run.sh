@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Opens reports in a headless Chromium and uses them: tests/browser/check.mjs. Needs chromium, node
+# Opens reports in a headless Chromium and uses them: tests/browser/check.mjs; the extension of an
+# editor: tests/browser/vscode.mjs. Needs chromium, node
 # and the npm package playwright-core; installs what is missing where it may (root and apt-get),
 # else says that it is skipped. Screenshots are left in target/browser.
 set -eu
@@ -32,6 +33,8 @@ fi
 
 fretwork=${FRETWORK:-target/release/fretwork}
 [ -x "$fretwork" ] || cargo build --release --quiet
+node tests/browser/vscode.mjs "$fretwork"
+
 runs="$place/runs"
 rm -rf "$runs"
 mkdir -p "$runs"

@@ -151,11 +151,6 @@ fn symbol(unit: &Unit) -> String {
     }
 }
 
-/// Returns whether a word is a unit that cases often have, which is no name of a value.
-pub(crate) fn is_usual(word: &str) -> bool {
-    USUAL.contains(&word)
-}
-
 /// Checks that a text is a unit or a hardness scale.
 ///
 /// # Errors

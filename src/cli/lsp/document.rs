@@ -69,7 +69,7 @@ mod tests {
         let document = Document::new(&uri, text.to_owned());
         assert_eq!(document.path, PathBuf::from("/tmp/a case.ron"));
         let byte = text.find("b\n").unwrap();
-        assert_eq!(document.position(byte), Position::new(1, 11));
+        assert_eq!(document.position(byte), Position::new(1, 12));
         for (at, _) in text.char_indices() {
             assert_eq!(document.byte(document.position(at)), at);
         }

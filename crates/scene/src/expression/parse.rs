@@ -35,8 +35,19 @@ pub(super) fn parse(
     let root = parser.sum()?;
     parser.blank();
     if parser.at < text.len() {
-        let found = parser.rest().chars().next().unwrap_or_default();
+        let rest = parser.rest();
+        let found = rest.chars().next().unwrap_or_default();
+        let word = &rest[..rest.find(|c| !continues_name(c)).unwrap_or(rest.len())];
+        let number = parser.text[..parser.at].trim_end();
+        let after_number = number.ends_with(|c: char| c.is_ascii_digit() || c == '.');
         let message = match found {
+            _ if after_number
+                && with_units
+                && names.contains(&word)
+                && units::known(word).is_ok() =>
+            {
+                two_meanings(word)
+            }
             ')' => "this `)` closes nothing".to_owned(),
             ',' => "a decimal comma is written as a point".to_owned(),
             _ => "an operator such as `*` is missing before this".to_owned(),
@@ -57,6 +68,34 @@ struct Parser<'a> {
     names: &'a [&'a str],
     with_units: bool,
     needs: Vec<usize>,
+}
+
+/// What a value of a product is made of, for the words after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Factor {
+    /// A number without a unit.
+    Number,
+    /// A number with a unit, or a unit after one.
+    Unit,
+    /// A number with a unit that divides what has names.
+    Divisor,
+    Other,
+}
+
+/// Why a word that is a name and a unit is neither.
+fn two_meanings(word: &str) -> String {
+    format!(
+        "`{word}` is a name of this file and a unit: give one of the two parentheses, as in \
+         `(2 mm) * {word}`, or give the name another spelling"
+    )
+}
+
+/// Why a unit after a divisor is not clear: `a / 2 N/m`.
+fn of_divisor(word: &str) -> String {
+    format!(
+        "does `{word}` belong to the unit of the divisor? That stands in parentheses, as in \
+         `a / (2 N/m)`"
+    )
 }
 
 /// Whether a name may begin with a character.
@@ -130,7 +169,7 @@ impl<'a> Parser<'a> {
     }
 
     fn product(&mut self) -> Result<Term, ExpressionError> {
-        let (mut left, mut literal) = self.signed(false)?;
+        let (mut left, mut last) = self.signed(Factor::Other)?;
         loop {
             let operation = match self.peek() {
                 Some('*') => Operation::Multiply,
@@ -138,22 +177,26 @@ impl<'a> Parser<'a> {
                 _ => return Ok(left),
             };
             self.at += 1;
-            let (right, also) = self.signed(literal)?;
-            literal &= also;
+            let (right, factor) = self.signed(last)?;
+            last = match (operation, last, factor) {
+                (Operation::Divide, Factor::Other, Factor::Unit) => Factor::Divisor,
+                (Operation::Divide, Factor::Other, Factor::Number) => Factor::Other,
+                (_, Factor::Divisor, Factor::Unit) => Factor::Divisor,
+                (_, _, factor) => factor,
+            };
             left = binary(operation, left, right);
         }
     }
 
-    /// Parses a value with its sign. After a number with a unit (`units`), a unit may stand as
-    /// itself, `2 N/m`. Returns whether the value is made of numbers and units.
-    fn signed(&mut self, units: bool) -> Result<(Term, bool), ExpressionError> {
+    /// Parses a value with its sign, after another one of its product.
+    fn signed(&mut self, before: Factor) -> Result<(Term, Factor), ExpressionError> {
         let start = match self.peek() {
             Some('-' | '+') => self.at,
-            _ => return self.power(units),
+            _ => return self.power(before),
         };
         let negative = self.rest().starts_with('-');
         self.at += 1;
-        let (inner, literal) = self.deeper(|p| p.signed(units))?;
+        let (inner, literal) = self.deeper(|p| p.signed(before))?;
         let span = start..inner.span.end;
         let kind = match negative {
             true => TermKind::Negative(Box::new(inner)),
@@ -162,16 +205,16 @@ impl<'a> Parser<'a> {
         Ok((Term { span, kind }, literal))
     }
 
-    fn power(&mut self, units: bool) -> Result<(Term, bool), ExpressionError> {
-        let (base, literal) = self.atom(units)?;
+    fn power(&mut self, before: Factor) -> Result<(Term, Factor), ExpressionError> {
+        let (base, literal) = self.atom(before)?;
         if !self.take('^') {
             return Ok((base, literal));
         }
-        let (exponent, _) = self.deeper(|p| p.signed(false))?;
+        let (exponent, _) = self.deeper(|p| p.signed(Factor::Other))?;
         Ok((binary(Operation::Power, base, exponent), literal))
     }
 
-    fn atom(&mut self, units: bool) -> Result<(Term, bool), ExpressionError> {
+    fn atom(&mut self, before: Factor) -> Result<(Term, Factor), ExpressionError> {
         let next = self.peek();
         let start = self.at;
         let Some(c) = next else {
@@ -183,13 +226,13 @@ impl<'a> Parser<'a> {
             return Err(error(end.saturating_sub(1)..end, message.to_owned()));
         };
         match c {
-            '0'..='9' | '.' => Ok((self.number()?, true)),
+            '0'..='9' | '.' => self.number(),
             '(' => {
                 self.at += 1;
-                let inner = self.deeper(|p| match units {
+                let (inner, factor) = self.deeper(|p| match before {
+                    Factor::Other => Ok((p.sum()?, Factor::Other)),
                     // The unit below a fraction, `2 mm^3/(N m)`.
-                    true => p.units_or_sum(),
-                    false => p.sum(),
+                    _ => p.units_or_sum(before),
                 })?;
                 if !self.take(')') {
                     let message = "this `(` is not closed by `)`".to_owned();
@@ -197,7 +240,7 @@ impl<'a> Parser<'a> {
                 }
                 let span = start..self.at;
                 let kind = inner.kind;
-                Ok((Term { span, kind }, units))
+                Ok((Term { span, kind }, factor))
             }
             '{' => {
                 self.at += 1;
@@ -207,9 +250,9 @@ impl<'a> Parser<'a> {
                     return Err(error(start..start + 1, message));
                 };
                 self.at += name.len() + 1;
-                Ok((self.name(name.trim(), start..self.at)?, false))
+                Ok((self.name(name.trim(), start..self.at)?, Factor::Other))
             }
-            c if begins_name(c) => self.word(units),
+            c if begins_name(c) => self.word(before),
             _ => Err(error(
                 self.here(),
                 format!("a value is missing before this `{c}`"),
@@ -218,7 +261,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Parses a number, with its unit if it has one.
-    fn number(&mut self) -> Result<Term, ExpressionError> {
+    fn number(&mut self) -> Result<(Term, Factor), ExpressionError> {
         let start = self.at;
         let (length, _) = quantity::parts(self.rest());
         let Some(value) = quantity::number(&self.rest()[..length]) else {
@@ -230,10 +273,8 @@ impl<'a> Parser<'a> {
         if unit.is_empty() {
             self.at = end;
             let kind = TermKind::Amount(Amount::number(value));
-            return Ok(Term {
-                span: start..end,
-                kind,
-            });
+            let span = start..end;
+            return Ok((Term { span, kind }, Factor::Number));
         }
         if !self.with_units {
             let message = format!("`{unit}` after a number: names and numbers here have no units");
@@ -244,10 +285,9 @@ impl<'a> Parser<'a> {
             span,
             nearest: wrong.nearest,
         })?;
-        Ok(Term {
-            span: start..self.at,
-            kind: TermKind::Amount(amount),
-        })
+        let span = start..self.at;
+        let kind = TermKind::Amount(amount);
+        Ok((Term { span, kind }, Factor::Unit))
     }
 
     /// Takes the words of a unit, with their powers: `N m`, `mm^2`, `%`. The first may be any word,
@@ -280,7 +320,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Parses units in parentheses after a `/`, or any expression.
-    fn units_or_sum(&mut self) -> Result<Term, ExpressionError> {
+    fn units_or_sum(&mut self, before: Factor) -> Result<(Term, Factor), ExpressionError> {
         let start = self.at;
         let (unit, span) = self.unit();
         let closed = self.peek() == Some(')');
@@ -288,36 +328,49 @@ impl<'a> Parser<'a> {
             && !unit.is_empty()
             && let Ok(amount) = Amount::of(1.0, &unit)
         {
-            return Ok(Term {
-                span,
-                kind: TermKind::Amount(amount),
-            });
+            if before == Factor::Divisor {
+                return Err(error(span, of_divisor(&unit)));
+            }
+            let kind = TermKind::Amount(amount);
+            return Ok((Term { span, kind }, Factor::Unit));
         }
         self.at = start;
-        self.sum()
+        Ok((self.sum()?, Factor::Other))
     }
 
-    /// Parses a function call, a name, a constant, or a unit where one may stand.
-    fn word(&mut self, units: bool) -> Result<(Term, bool), ExpressionError> {
+    /// Parses a function call, a name, a constant, or a unit where one may stand: after a number, as
+    /// in `2 N/m`.
+    fn word(&mut self, before: Factor) -> Result<(Term, Factor), ExpressionError> {
         let start = self.at;
         let length = self.rest().find(|c| !continues_name(c));
         let word = &self.rest()[..length.unwrap_or(self.rest().len())];
         self.at += word.len();
         let span = start..self.at;
         if self.peek() == Some('(') {
-            return Ok((self.call(word, span)?, false));
+            return Ok((self.call(word, span)?, Factor::Other));
         }
         self.at = span.end;
-        let unit = units && self.with_units && !self.names.contains(&word);
-        if unit && units::known(word).is_ok() {
+        let named = self.names.contains(&word);
+        let unit = before != Factor::Other && self.with_units && units::known(word).is_ok();
+        // `2 N/m` looks like a unit, `2 N / m` like a quotient.
+        let mut left = self.text[..start].chars().rev();
+        let close = left.next().is_some_and(|c| "*/".contains(c))
+            && left.next().is_some_and(|c| !c.is_whitespace());
+        if unit && named && close && before != Factor::Number {
+            return Err(error(span, two_meanings(word)));
+        }
+        if unit && !named && before == Factor::Divisor {
+            return Err(error(span, of_divisor(word)));
+        }
+        if unit && !named {
             self.at = start;
             let (unit, span) = self.unit();
             if let Ok(amount) = Amount::of(1.0, &unit) {
                 let kind = TermKind::Amount(amount);
-                return Ok((Term { span, kind }, true));
+                return Ok((Term { span, kind }, Factor::Unit));
             }
         }
-        Ok((self.name(word, span)?, false))
+        Ok((self.name(word, span)?, Factor::Other))
     }
 
     fn call(&mut self, word: &str, span: Range<usize>) -> Result<Term, ExpressionError> {

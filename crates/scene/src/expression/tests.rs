@@ -57,14 +57,21 @@ fn amounts_have_the_dimensions_of_their_calculation() {
         ("p0", 1.12, "GPa"),
         ("L", 2.0, "mm"),
         ("rho", 7.85, "t/m^3"),
+        // Names that are units too.
+        ("g", 10.0, "m/s^2"),
+        ("h", 4.0, "mm"),
     ];
     for (text, value, unit) in [
+        ("5 kg * g", 50.0, "in `N`"),
+        ("2 * g / h", 5000.0, "in `1/s^2`"),
+        ("20 N / h", 5000.0, "in `N/m`"),
+        ("p0 * 2 N/m", 2.24e9, "in `kg^2/(m s^4)`"),
         ("p0 * L", 1.12e9 * 2e-3, "in `N/m`"),
         ("L / 2 + 1 mm", 2e-3, "in `m`"),
         ("sqrt(p0 / rho)", (1.12e9f64 / 7850.0).sqrt(), "in `m/s`"),
         ("2 N/mm", 2000.0, "in `N/m`"),
         ("0.02 kJ/m^2", 20.0, "in `N/m`"),
-        ("3e-5 mm^3/(N m)", 3e-14, "in `m^3/J`"),
+        ("3e-5 mm^3/(N m)", 3e-14, "in `1/Pa`"),
         ("2 Pa s / (4 s)", 0.5, "in `Pa`"),
         ("2 mm^2", 2e-6, "in `m^2`"),
         ("40 % * L", 0.8e-3, "in `m`"),
@@ -81,7 +88,12 @@ fn amounts_have_the_dimensions_of_their_calculation() {
 
 #[test]
 fn errors_say_what_is_wrong_and_where() {
-    let names = [("p0", 1.0, "GPa"), ("length", 2.0, "mm"), ("n", 3.0, "")];
+    let names = [
+        ("p0", 1.0, "GPa"),
+        ("length", 2.0, "mm"),
+        ("n", 3.0, ""),
+        ("m", 2.0, "kg"),
+    ];
     for (text, at, words) in [
         (
             "p0 + length",
@@ -106,6 +118,11 @@ fn errors_say_what_is_wrong_and_where() {
             "two values of the same dimension",
         ),
         ("2 * lenght", "lenght", "did you mean `length`?"),
+        ("p0 / 2 N/m", "m", "as in `a / (2 N/m)`"),
+        ("p0 / 2 N/(m s)", "m s", "as in `a / (2 N/m)`"),
+        ("2 m", "m", "`m` is a name of this file and a unit"),
+        ("5 N/m", "m", "`m` is a name of this file and a unit"),
+        ("p0 * 5 N*m", "m", "`m` is a name of this file and a unit"),
         (
             "sqr(n)",
             "sqr",

@@ -119,7 +119,14 @@ impl Source {
         let before = &text[..word];
         let quoted = before.ends_with('"');
         let before = before.strip_suffix('"').unwrap_or(before).trim_end();
-        let group = self.group_at(word);
+        // A value that is missing would end the tree here: one stands for it.
+        let group = match before.ends_with(':') && !quoted && word == byte {
+            true => {
+                let filled = format!("{text}_{}", &self.text[byte..]);
+                Source::from_text(&self.path, filled).group_at(word)
+            }
+            false => self.group_at(word),
+        };
         let present = group.present.clone();
         let slot = |path: Vec<String>, kind: SlotKind| {
             Some(CursorSlot {
@@ -276,6 +283,8 @@ mod tests {
             ),
             ("(m: {\"steel\": \"|\"})", "m.steel", SlotKind::Value, true),
             ("(list: [|", "list.0", SlotKind::Value, false),
+            ("(a: (b: |), c: 1)", "a.b", SlotKind::Value, false),
+            ("(a: (b: |, d: 2), c: 1)", "a.b", SlotKind::Value, false),
             (
                 "(between: (\"a\", \"|\"))",
                 "between.1",

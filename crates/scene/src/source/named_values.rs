@@ -8,7 +8,7 @@ use super::tree::{Entry, Node, Shape, ValueKind};
 use super::{InputError, Source};
 use crate::expression::{self, Expression, ExpressionError};
 use crate::quantity;
-use crate::units::{self, Amount};
+use crate::units::Amount;
 
 /// Key of the named values at the top of a text.
 const LET: &str = "let";
@@ -197,11 +197,6 @@ impl Source {
         if expression::is_taken(name) {
             return wrong(format!(
                 "`{name}` is a function or constant: choose another name"
-            ));
-        }
-        if units::is_usual(name) {
-            return wrong(format!(
-                "`{name}` is a unit, as in `1 {name}`: choose another name"
             ));
         }
         Ok(())

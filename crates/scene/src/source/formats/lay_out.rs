@@ -10,11 +10,8 @@ const WIDE: usize = 100;
 /// Spaces of a level.
 const STEP: usize = 4;
 
-/// Returns a value as JSON or YAML.
-///
-/// # Errors
-/// A number is infinite, which JSON has not.
-pub(super) fn item(item: &Item, format: Format) -> Result<String, String> {
+/// Returns a value as JSON or YAML. An infinite number is a text in JSON, which has none.
+pub(super) fn item(item: &Item, format: Format) -> String {
     let mut out = String::new();
     match (format, &item.kind) {
         (Format::Yaml, ItemKind::Object(entries)) if !entries.is_empty() => {
@@ -22,30 +19,18 @@ pub(super) fn item(item: &Item, format: Format) -> Result<String, String> {
             out.remove(0);
         }
         (Format::Yaml, _) => out = flow(item, true),
-        _ => json(item, 0, &mut out)?,
+        _ => json(item, 0, &mut out),
     }
-    Ok(out.trim_end().to_owned() + "\n")
+    out.trim_end().to_owned() + "\n"
 }
 
 /// Writes JSON.
-fn json(item: &Item, depth: usize, out: &mut String) -> Result<(), String> {
-    if let ItemKind::Number(number) = &item.kind
-        && number.ends_with(char::is_alphabetic)
-    {
-        return Err(format!(
-            "has the number {number}, which JSON has not: convert it to YAML"
-        ));
-    }
+fn json(item: &Item, depth: usize, out: &mut String) {
     let short = flow(item, false);
     let leaf = !matches!(item.kind, ItemKind::List(_) | ItemKind::Object(_));
-    if leaf
-        || depth > 0
-            && fits(&short, depth, out)
-            && !short.contains(".inf")
-            && !short.contains(".nan")
-    {
+    if leaf || depth > 0 && fits(&short, depth, out) {
         *out += &short;
-        return Ok(());
+        return;
     }
     let line = |out: &mut String, depth: usize| {
         *out += "\n";
@@ -54,17 +39,17 @@ fn json(item: &Item, depth: usize, out: &mut String) -> Result<(), String> {
     let (brackets, count) = match &item.kind {
         ItemKind::List(items) => (["[", "]"], items.len()),
         ItemKind::Object(entries) => (["{", "}"], entries.len()),
-        _ => return Ok(()),
+        _ => return,
     };
     *out += brackets[0];
     for k in 0..count {
         line(out, depth + 1);
         match &item.kind {
-            ItemKind::List(items) => json(&items[k], depth + 1, out)?,
+            ItemKind::List(items) => json(&items[k], depth + 1, out),
             ItemKind::Object(entries) => {
                 *out += &quoted(&entries[k].0.name);
                 *out += ": ";
-                json(&entries[k].1, depth + 1, out)?;
+                json(&entries[k].1, depth + 1, out);
             }
             _ => {}
         }
@@ -72,7 +57,6 @@ fn json(item: &Item, depth: usize, out: &mut String) -> Result<(), String> {
     }
     line(out, depth);
     *out += brackets[1];
-    Ok(())
 }
 
 /// Whether a text fits behind the last line of another.
@@ -118,11 +102,12 @@ fn flow(item: &Item, yaml: bool) -> String {
     match &item.kind {
         ItemKind::Null => "null".to_owned(),
         ItemKind::Bool(value) => value.to_string(),
-        ItemKind::Number(number) => match number.as_str() {
-            "inf" => ".inf".to_owned(),
-            "-inf" => "-.inf".to_owned(),
-            "NaN" => ".nan".to_owned(),
-            number => number.to_owned(),
+        ItemKind::Number(number) => match (number.as_str(), yaml) {
+            ("inf", true) => ".inf".to_owned(),
+            ("-inf", true) => "-.inf".to_owned(),
+            ("NaN", true) => ".nan".to_owned(),
+            ("inf" | "-inf" | "NaN", false) => quoted(number),
+            (number, _) => number.to_owned(),
         },
         ItemKind::Text(text) => quoted(&text.content),
         ItemKind::List(items) => {

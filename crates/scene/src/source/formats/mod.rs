@@ -68,7 +68,7 @@ impl Source {
     /// Returns the text as it was written, in another format and laid out anew. Comments are lost.
     ///
     /// # Errors
-    /// The text is not well formed, or has a number that the format has not.
+    /// The text is not well formed, or has a value that the format has not.
     pub fn in_format(&self, format: Format) -> Result<String, InputError> {
         let written = Self::from_text(&self.path, self.written());
         if let Some(fault) = &written.tree.fault {
@@ -78,7 +78,7 @@ impl Source {
             Some(root) if format == Format::Ron => Ok(lay_out::ron(&written.text, root)),
             Some(root) => {
                 let item = of_ron::item(&written, root)?;
-                lay_out::item(&item, format).map_err(|why| InputError::about(&self.name, why))
+                Ok(lay_out::item(&item, format))
             }
             None => Err(InputError::about(&self.name, "holds no value")),
         }

@@ -143,7 +143,11 @@ fn mistakes_are_errors_at_their_places() {
             "\"L\": 2 mm, |\"L\": 3 mm",
             "the key `L` is given twice",
         ),
-        ("\"L\": 2 mm", "\"L\": 2 mm, |\"mm\": 3", "`mm` is a unit"),
+        (
+            "\"L\": 2 mm",
+            "\"g\": 9.81 m/s^2, \"L\": \"2 m/s^2 * 1 s^2 + 3 |g\"",
+            "`g` is a name of this file and a unit",
+        ),
         (
             "\"L\": 2 mm",
             "\"L\": 2 mm, |\"sin\": 3",

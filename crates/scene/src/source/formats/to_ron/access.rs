@@ -93,6 +93,8 @@ impl<'de> SeqAccess<'de> for Elements<'_, '_> {
 pub(super) struct Variant<'n, 'a, 'f> {
     pub(super) name: &'n str,
     pub(super) content: Option<&'a Item>,
+    /// Whether the content stands alone, without the name and its parentheses.
+    pub(super) implied: bool,
     pub(super) writer: Writer<'a, 'f>,
 }
 
@@ -107,6 +109,7 @@ impl<'de, 'a, 'f> EnumAccess<'de> for Variant<'_, 'a, 'f> {
         let name = seed.deserialize(StrDeserializer::<Error>::new(self.name))?;
         let content = Content {
             item: self.content,
+            implied: self.implied,
             writer: self.writer,
         };
         Ok((name, content))
@@ -116,6 +119,7 @@ impl<'de, 'a, 'f> EnumAccess<'de> for Variant<'_, 'a, 'f> {
 /// The content of a variant.
 pub(super) struct Content<'a, 'f> {
     pub(super) item: Option<&'a Item>,
+    pub(super) implied: bool,
     pub(super) writer: Writer<'a, 'f>,
 }
 
@@ -124,6 +128,9 @@ impl<'a, 'f> Content<'a, 'f> {
     fn within<T>(self, write: impl FnOnce(Writer<'a, 'f>) -> Result<T, Error>) -> Result<T, Error> {
         // A variant without its content is written as that.
         let item = self.item.ok_or_else(unfit)?;
+        if self.implied {
+            return write(self.writer.of(item));
+        }
         let (out, span) = (self.writer.out, &self.writer.item.span);
         out.borrow_mut().push("(", span);
         let found = write(Writer {

@@ -12,7 +12,7 @@ use super::item::{Item, ItemKind, Key, is_word};
 use crate::quantity;
 use crate::source::source_map::SourceMap;
 use access::{Elements, Fields, Progress, Variant};
-use out::{Out, is_quantity};
+use out::{Out, is_quantity, special};
 use serde::de::value::Error;
 use serde::de::{DeserializeOwned, Deserializer, Error as _, Visitor};
 use serde::forward_to_deserialize_any;
@@ -44,12 +44,7 @@ pub(in crate::source) fn write<T: DeserializeOwned>(
 
 /// Whether a text stands for a number: with a unit, or as an expression.
 fn is_amount(text: &str) -> bool {
-    is_quantity(text) || text.contains("${")
-}
-
-/// The text of a number that JSON has not.
-fn special(text: &str) -> Option<&str> {
-    ["inf", "-inf", "NaN"].into_iter().find(|s| *s == text)
+    is_quantity(text) || special(text) || text.contains("${")
 }
 
 /// Writes one value as the type asks for it.
@@ -91,7 +86,7 @@ impl<'a, 'f> Writer<'a, 'f> {
                 self.out.borrow_mut().number(number, span);
                 visit_number(visitor, number)
             }
-            ItemKind::Text(text) if special(&text.content).is_some() => {
+            ItemKind::Text(text) if special(&text.content) => {
                 self.out.borrow_mut().push(&text.content, span);
                 visitor.visit_f64(1.0)
             }
@@ -382,12 +377,13 @@ impl<'de> Deserializer<'de> for Writer<'_, '_> {
             ItemKind::Text(text) => is_amount(&text.content),
             _ => false,
         };
+        // A constant function of time is written as its number, as in RON.
         if number && variants.contains(&"Constant") {
-            self.push("Constant");
             let content = Some(self.item);
             return visitor.visit_enum(Variant {
                 name: "Constant",
                 content,
+                implied: true,
                 writer: self,
             });
         }
@@ -399,6 +395,7 @@ impl<'de> Deserializer<'de> for Writer<'_, '_> {
                 visitor.visit_enum(Variant {
                     name: &text.content,
                     content,
+                    implied: false,
                     writer: self,
                 })
             }
@@ -416,6 +413,7 @@ impl<'de> Deserializer<'de> for Writer<'_, '_> {
                     visitor.visit_enum(Variant {
                         name,
                         content,
+                        implied: false,
                         writer: self,
                     })
                 }

@@ -83,7 +83,9 @@ impl Out<'_> {
             ItemKind::Null => self.push("None", span),
             ItemKind::Bool(value) => self.push(if *value { "true" } else { "false" }, span),
             ItemKind::Number(number) => self.number(number, span),
-            ItemKind::Text(text) if is_quantity(&text.content) => self.quantity(text, span),
+            ItemKind::Text(text) if is_quantity(&text.content) || special(&text.content) => {
+                self.quantity(text, span);
+            }
             ItemKind::Text(text) => self.quoted(text, span),
             ItemKind::List(items) => {
                 self.push("[", span);
@@ -116,6 +118,11 @@ impl Out<'_> {
             }
         }
     }
+}
+
+/// Whether a text is a number that JSON has not.
+pub(super) fn special(text: &str) -> bool {
+    matches!(text, "inf" | "-inf" | "NaN")
 }
 
 /// Whether a text is a number with a unit, which RON writes without quotes.
