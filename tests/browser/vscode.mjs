@@ -87,7 +87,7 @@ assert.equal(gravity.kind, 4, "a field"); // CompletionItemKind.Field of VS Code
 
 text = right;
 handlers.change({ document });
-const hover = await providers.hover.provideHover(document, position("gravity"));
+const hover = await providers.hover.provideHover(document, position("gravity:"));
 assert.match(hover.contents.value, /m\/s\^2/);
 
 await extension.deactivate();

@@ -41,6 +41,7 @@ mod patch_windows;
 mod plugin_loading;
 mod quantities;
 mod rebuilt_program;
+mod release_files;
 mod report;
 mod results;
 mod resume;

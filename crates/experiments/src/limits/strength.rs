@@ -222,7 +222,7 @@ impl Strength {
             let hardens = match self.in_service.kind {
                 YieldKind::Hardened => ", although it has hardened",
                 YieldKind::Monotonic => {
-                    "; that is of steel not yet deformed, and hardening in service raises the limit (its file has no yield_stress_hardened)"
+                    "; that is of steel not yet deformed, and hardening in service may raise the limit (its file has no yield_stress_hardened)"
                 }
                 YieldKind::Flow => ", and it yields below that",
                 YieldKind::Given => "",

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Case, key_units};
-use crate::source::{InputError, Names, Place, Source, ValueKind, Wanted};
+use crate::source::{InputError, Names, Node, Place, Source, ValueKind, Wanted};
 
 // These functions are compiled in this crate only: the deserializers of a case are half of its
 // code, and a generic call in another crate would compile them again.
@@ -32,13 +32,19 @@ impl Case {
     /// line and column.
     pub fn convert_units(source: &mut Source) -> Result<(), InputError> {
         let written = source.tree().find(source.text(), &["dimension".to_owned()]);
-        if written.is_ok_and(|node| matches!(node.kind, ValueKind::Text)) {
-            // Units of other numbers depend on it.
-            let error = source.error_at("dimension", "the dimension is no text or expression");
-            return Err(error.expected("2 or 3"));
+        let text = |node: &Node| source.text()[node.span.clone()].to_owned();
+        // Units of other numbers depend on it, so that its error comes first.
+        let wrong = match written.as_ref().map(|node| (&node.kind, text(node))) {
+            Ok((ValueKind::Text, _)) => Some("the dimension is no text or expression".to_owned()),
+            Ok((ValueKind::Number, number)) if !["2", "3"].contains(&number.as_str()) => {
+                Some(format!("dimension {number} is not possible"))
+            }
+            _ => None,
+        };
+        if let Some(message) = wrong {
+            return Err(source.error_at("dimension", message).expected("2 or 3"));
         }
-        let written = source.tree().find(source.text(), &["dimension".to_owned()]);
-        let plane = written.is_ok_and(|node| &source.text()[node.span.clone()] == "2");
+        let plane = written.is_ok_and(|node| text(node) == "2");
         let dimension = if plane { 2 } else { 3 };
         source.replace_quantities(|place: &Place<'_>| {
             let names = place.names;

@@ -338,8 +338,8 @@ impl<'a> Parser<'a> {
         Ok((self.sum()?, Factor::Other))
     }
 
-    /// Parses a function call, a name, a constant, or a unit where one may stand: after a number, as
-    /// in `2 N/m`.
+    /// Parses a function call, a name, a constant, or a unit where one may stand: after a number,
+    /// as in `2 N/m`.
     fn word(&mut self, before: Factor) -> Result<(Term, Factor), ExpressionError> {
         let start = self.at;
         let length = self.rest().find(|c| !continues_name(c));

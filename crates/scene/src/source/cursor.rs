@@ -119,13 +119,21 @@ impl Source {
         let before = &text[..word];
         let quoted = before.ends_with('"');
         let before = before.strip_suffix('"').unwrap_or(before).trim_end();
-        // A value that is missing would end the tree here: one stands for it.
-        let group = match before.ends_with(':') && !quoted && word == byte {
-            true => {
-                let filled = format!("{text}_{}", &self.text[byte..]);
+        // A value that is missing, and quotes that stay open, would end the tree here: a word stands
+        // for them.
+        let after = &self.text[byte..];
+        let open = quoted
+            && !after
+                .trim_start_matches(|c| c != '"' && c != '\n')
+                .starts_with('"');
+        let missing = before.ends_with([':', '[']) && !quoted && word == byte;
+        let group = match (open, missing) {
+            (false, false) => self.group_at(word),
+            _ => {
+                let end = if open { "\"" } else { "" };
+                let filled = format!("{}_{end}{after}", &self.text[..word]);
                 Source::from_text(&self.path, filled).group_at(word)
             }
-            false => self.group_at(word),
         };
         let present = group.present.clone();
         let slot = |path: Vec<String>, kind: SlotKind| {

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
-use super::tree::{Entry, Node, Shape, ValueKind};
+use super::tree::{Entry, Group, Node, Shape, ValueKind};
 use super::{InputError, Source};
 use crate::expression::{self, Expression, ExpressionError};
 use crate::quantity;
@@ -98,7 +98,9 @@ impl Source {
         let Some((entry, at)) = entry(self, root) else {
             return Ok(NamedValues::default());
         };
-        let group = entry.value.group().filter(|g| g.shape == Shape::Map);
+        // As a struct too: names need no quotes.
+        let names = |g: &&Group| matches!(g.shape, Shape::Map | Shape::Struct);
+        let group = entry.value.group().filter(names);
         let Some(group) = group else {
             let error = self.error_in(&entry.value.head(&self.text), "`let` is no map of names");
             return Err(error.expected("`let: {\"p0\": \"1.12 GPa\", \"L\": \"2 mm\"}`"));

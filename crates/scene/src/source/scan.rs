@@ -241,7 +241,11 @@ impl<'a> Scanner<'a> {
                 format!("a text has straight double quotes, `\"...\"`, not `{c}`")
             }
             '\u{2212}' | '\u{2013}' => format!("a minus is `-`, not `{c}`"),
-            '$' => "an expression stands in quotes: `\"${...}\"`".to_owned(),
+            '$' => {
+                let message = "an expression stands in quotes: `\"${...}\"`";
+                self.cause(self.here(), message);
+                return;
+            }
             c => format!("unexpected character {c:?}"),
         };
         self.fault(self.here(), message);
