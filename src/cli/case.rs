@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// Examples of the help.
 pub const EXAMPLES: &str = "Examples:
-  fretwork case convert cases/pin_on_disc.ron --to yaml > pin_on_disc.yaml
+  fretwork case convert plane_shear --to yaml > plane_shear.yaml
   fretwork case schema > case.schema.json";
 
 /// Commands about the format of cases.

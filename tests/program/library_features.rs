@@ -18,12 +18,19 @@ const FEATURES: [(&str, &[&str], &[&str]); 6] = [
             "tiny-skia",
         ],
     ),
-    ("experiments", &["view"], &["fretwork-experiments", "exmex"]),
+    ("experiments", &["view"], &["fretwork-experiments"]),
     ("parquet", &["experiments"], &["parquet"]),
     (
         "program",
         &["laws", "parquet"],
-        &["clap", "indicatif", "signal-hook"],
+        &[
+            "clap",
+            "clap_complete",
+            "clap_mangen",
+            "indicatif",
+            "lsp-server",
+            "signal-hook",
+        ],
     ),
 ];
 

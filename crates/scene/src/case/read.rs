@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{Case, key_units};
+use crate::quantity;
 use crate::source::{InputError, Names, Node, Place, Source, ValueKind, Wanted};
 
 // These functions are compiled in this crate only: the deserializers of a case are half of its
@@ -36,7 +37,9 @@ impl Case {
         // Units of other numbers depend on it, so that its error comes first.
         let wrong = match written.as_ref().map(|node| (&node.kind, text(node))) {
             Ok((ValueKind::Text, _)) => Some("the dimension is no text or expression".to_owned()),
-            Ok((ValueKind::Number, number)) if !["2", "3"].contains(&number.as_str()) => {
+            Ok((ValueKind::Number, number))
+                if quantity::number(&number).is_some_and(|d| d != 2.0 && d != 3.0) =>
+            {
                 Some(format!("dimension {number} is not possible"))
             }
             _ => None,
@@ -44,7 +47,7 @@ impl Case {
         if let Some(message) = wrong {
             return Err(source.error_at("dimension", message).expected("2 or 3"));
         }
-        let plane = written.is_ok_and(|node| text(node) == "2");
+        let plane = written.is_ok_and(|node| quantity::number(&text(node)) == Some(2.0));
         let dimension = if plane { 2 } else { 3 };
         source.replace_quantities(|place: &Place<'_>| {
             let names = place.names;

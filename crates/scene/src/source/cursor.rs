@@ -119,8 +119,8 @@ impl Source {
         let before = &text[..word];
         let quoted = before.ends_with('"');
         let before = before.strip_suffix('"').unwrap_or(before).trim_end();
-        // A value that is missing, and quotes that stay open, would end the tree here: a word stands
-        // for them.
+        // A value that is missing, and quotes that stay open, would end the tree here: a word
+        // stands for them.
         let after = &self.text[byte..];
         let open = quoted
             && !after
