@@ -198,3 +198,16 @@ fn shells_know_commands_and_options() {
     assert!(page("fretwork-run.1").contains("KEY.PATH=VALUE"));
     assert!(page("fretwork.1").contains("fretwork\\-run(1)"));
 }
+
+#[test]
+fn the_example_of_the_page_is_a_case() {
+    let page = include_str!("../../docs/case_format/values.md");
+    let example = page.split("```yaml\n").nth(1).unwrap();
+    let folder = TempFolder::new("page-yaml");
+    std::fs::write(
+        folder.join("lid.yaml"),
+        example.split("```").next().unwrap(),
+    )
+    .unwrap();
+    said(&folder, &["check", "lid.yaml"], 0);
+}

@@ -132,7 +132,8 @@ impl<'de> Deserialize<'de> for NumberSpec {
         #[serde(deny_unknown_fields)]
         struct WithUnit {
             value: f64,
-            unit: String,
+            #[serde(default)]
+            unit: Option<String>,
             /// Accepted for human readers; not used.
             #[serde(default, rename = "source")]
             _source: Option<String>,
@@ -156,7 +157,7 @@ impl<'de> Deserialize<'de> for NumberSpec {
                 let found = WithUnit::deserialize(MapAccessDeserializer::new(map))?;
                 Ok(NumberSpec {
                     value: found.value,
-                    unit: Some(found.unit),
+                    unit: found.unit,
                 })
             }
         }

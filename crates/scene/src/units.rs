@@ -202,7 +202,11 @@ fn read(text: &str) -> Result<Unit, UnitError> {
             format!("`{name}` in `{text}` is not a known unit")
         },
         expected: None,
-        nearest: nearest(name, USUAL).map(|near| text.replacen(name, near, 1)),
+        nearest: match name {
+            // As papers write it, for instance in mm^3/Nm.
+            "Nm" => Some(text.replacen(name, "(N m)", 1)),
+            _ => nearest(name, USUAL).map(|near| text.replacen(name, near, 1)),
+        },
     };
     let refused = |why: String| UnitError {
         message: format!("`{text}` is not a unit: {why}"),

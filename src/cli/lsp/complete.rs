@@ -52,6 +52,12 @@ pub fn items(server: &Server, document: &Document, position: Position) -> Vec<Co
         SlotKind::Key => {
             let mut keys = server.schema.fields(&slot.path);
             keys.retain(|key| !slot.present.contains(&key.name));
+            if let Some(law) = law_of(&source, &slot.path) {
+                let own = |key: &Described| only_of(&law, &key.doc).is_some();
+                if keys.iter().any(own) {
+                    keys.retain(own);
+                }
+            }
             quoted(described(CompletionItemKind::FIELD, keys))
         }
         SlotKind::Value => match names(&source, &slot, document) {
@@ -72,6 +78,27 @@ pub fn items(server: &Server, document: &Document, position: Position) -> Vec<Co
             }
         },
     }
+}
+
+/// The name of the law that an interface has beside the parameters at a path.
+pub fn law_of(source: &Source, path: &[String]) -> Option<String> {
+    let [list, index, parameters, kind, ..] = path else {
+        return None;
+    };
+    if list != "interfaces" || parameters != "parameters" {
+        return None;
+    }
+    let law = [list, index, kind].map(String::clone);
+    let node = source.tree().find(source.text(), &law).ok()?;
+    node.unwrap_some(source.text()).string(source.text())
+}
+
+/// What the documentation of a parameter, a line for each law that has it, says of one law.
+pub fn only_of<'d>(law: &str, doc: &'d str) -> Option<&'d str> {
+    doc.lines().find(|line| {
+        line.strip_prefix(law)
+            .is_some_and(|rest| rest.starts_with(": "))
+    })
 }
 
 fn item(name: &str, kind: CompletionItemKind, doc: String) -> CompletionItem {

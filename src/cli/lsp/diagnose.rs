@@ -4,8 +4,8 @@ use super::Server;
 use super::document::Document;
 use crate::cli::observers;
 use crate::record::check_names;
-use crate::scene::material::Material;
-use crate::scene::source::{Format, Source, Tree};
+use crate::scene::material::{Material, MaterialLibrary};
+use crate::scene::source::fields_of;
 use crate::scene::{InputError, LoadedCase, load_text};
 use lsp_types::{Diagnostic, DiagnosticSeverity, Range};
 use std::path::Path;
@@ -22,7 +22,7 @@ pub fn diagnostics(server: &Server, document: &Document, whole: bool) -> Vec<Dia
                 false => Ok(()),
             })
         }
-        Kind::Material => material(&document.path, &document.text),
+        Kind::Material => material(&name, &document.text),
         Kind::Other => Ok(()),
     };
     let error = found.err();
@@ -38,9 +38,8 @@ fn build(server: &Server, loaded: &LoadedCase) -> Result<(), InputError> {
     check_names(loaded, &observers)
 }
 
-fn material(path: &Path, text: &str) -> Result<(), InputError> {
-    let mut source = Source::text_as::<Material>(path, text)?;
-    source.pair_quantities()?;
+fn material(name: &str, text: &str) -> Result<(), InputError> {
+    let source = MaterialLibrary::read_text(name, text)?;
     let material: Material = source.parse()?;
     material.density().map_err(|fault| source.locate(fault))?;
     Ok(())
@@ -55,26 +54,16 @@ enum Kind {
 }
 
 fn kind(document: &Document) -> Kind {
-    let names: Vec<String> = match Format::of(&document.path) {
-        Format::Ron => {
-            let tree = Tree::of(&document.text);
-            let group = tree.root.as_ref().and_then(|root| root.group());
-            let keys = group.into_iter().flat_map(|g| &g.entries);
-            keys.filter_map(|e| Some(document.text[e.key.clone()?].to_owned()))
-                .collect()
-        }
-        // Their fields begin a line or follow a bracket, in quotes or not.
-        _ => {
-            let words = document
-                .text
-                .split(|c: char| !c.is_alphanumeric() && c != '_');
-            words.map(str::to_owned).collect()
-        }
-    };
-    let has = |name: &str| names.iter().any(|n| n == name);
+    let names = fields_of(&document.path, &document.text);
+    let has = |name: &&str| names.iter().any(|n| n == name);
+    let of_case = ["interfaces", "bodies", "grains", "materials", "name"]
+        .iter()
+        .any(&has);
     match () {
-        () if has("time") || has("dimension") => Kind::Case,
-        () if has("density") && !has("materials") => Kind::Material,
+        // Of a study, a fit or a trade.
+        () if has(&"case") => Kind::Other,
+        () if has(&"dimension") || has(&"time") && of_case => Kind::Case,
+        () if has(&"density") && has(&"doc") => Kind::Material,
         () => Kind::Other,
     }
 }

@@ -13,7 +13,11 @@ pub struct Document {
 
 impl Document {
     /// The file of an address.
-    pub fn new(uri: &Uri, text: String) -> Self {
+    pub fn new(uri: &Uri, mut text: String) -> Self {
+        // The byte order mark is no part of the first line.
+        if text.starts_with('\u{feff}') {
+            text.drain(..'\u{feff}'.len_utf8());
+        }
         let path = uri.path().as_estr().decode().into_string();
         let path = path.map_or_else(|_| uri.as_str().to_owned(), |path| path.into_owned());
         // `/C:/case.ron` on Windows.

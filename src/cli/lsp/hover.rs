@@ -1,6 +1,7 @@
 //! What a name or value is: documentation, unit and default.
 
 use super::Server;
+use super::complete::{law_of, only_of};
 use super::document::Document;
 use crate::scene::Case;
 use crate::scene::material::MaterialLibrary;
@@ -25,7 +26,10 @@ pub fn hover(server: &Server, document: &Document, position: Position) -> Option
             .or(of_material),
     );
     if parts.is_empty() {
-        parts.extend(server.schema.doc(&place.path));
+        let doc = server.schema.doc(&place.path);
+        let law = law_of(&source, &place.path);
+        let own = law.and_then(|law| only_of(&law, doc.as_deref()?).map(str::to_owned));
+        parts.extend(own.or(doc));
     }
     match Case::unit_at(&place.path, dimension(&source)) {
         Some("") | None => {}

@@ -48,6 +48,18 @@ impl Level {
         }
     }
 
+    /// Gives a unit to the plain numbers that it sets.
+    pub fn in_unit(mut self, unit: &str) -> Self {
+        for set in &mut self.sets {
+            let value = set.split_once('=').map(|(_, value)| value.parse::<f64>());
+            if value.is_some_and(|value| value.is_ok()) {
+                *set += " ";
+                *set += unit;
+            }
+        }
+        self
+    }
+
     /// A named alternative, which is no number.
     pub fn named(label: &str, sets: Vec<String>) -> Self {
         Self {
@@ -251,6 +263,14 @@ mod tests {
         let one = &range(LINEAR, 3).levels().unwrap()[1];
         assert_eq!(one.sets, ["a=0.5", "b=0.5"]);
         assert_eq!(one.number, Some(0.5));
+    }
+
+    #[test]
+    fn plain_numbers_of_a_name_take_the_unit_of_the_factor() {
+        let keys = ["let.L".to_owned()];
+        let sets = |text: &str| Level::of(&keys, text).in_unit("mm").sets;
+        assert_eq!(sets("0.9"), ["let.L=0.9 mm"]);
+        assert_eq!(sets("1 um"), ["let.L=1 um"]);
     }
 
     #[test]

@@ -115,6 +115,24 @@ impl FactorSpec {
             }
             own => own.unwrap_or(written),
         };
+        // A name of `let` has no unit of its own: its numbers have that of the factor.
+        let of_names = !keys.is_empty() && keys.iter().all(|key| key.starts_with("let."));
+        let values = match values {
+            Values::Listed(levels) if of_names && !unit.is_empty() => {
+                let levels = levels.into_iter().map(|level| level.in_unit(&unit));
+                Values::Listed(levels.collect())
+            }
+            Values::Range {
+                scale,
+                levels,
+                unit: own,
+            } if of_names && own.is_empty() => Values::Range {
+                scale,
+                levels,
+                unit: unit.clone(),
+            },
+            values => values,
+        };
         Ok(Factor {
             values,
             name: name.clone(),
@@ -224,7 +242,10 @@ fn unpaired(text: &str) -> String {
         let whole = pair.and_then(|(number, tail)| Some((number, tail.split_once(PAIR[2])?)));
         match whole.filter(|(_, (unit, _))| !unit.contains('"')) {
             Some((number, (unit, tail))) => {
-                out += &format!("{number} {unit}");
+                out += number;
+                if unit != "1" {
+                    out += &format!(" {unit}");
+                }
                 rest = tail;
             }
             None => {

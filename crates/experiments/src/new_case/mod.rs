@@ -38,6 +38,10 @@ use fretwork_core::laws::SearchPath;
 use fretwork_observe::quantity::quantity as shown;
 use std::collections::BTreeMap;
 
+/// Creepage from which a number without a unit is asked for one: curves of rails end at some per
+/// cent, and 0.5 is half of a per cent as often as a half.
+const MEANT_IN_PER_CENT: f64 = 0.02;
+
 /// Distance of atoms in a metal (m), and least amplitude: a few of them.
 const ATOMS: f64 = 2.5e-10;
 const LEAST_AMPLITUDE: f64 = 4.0 * ATOMS;
@@ -231,8 +235,13 @@ impl Question {
     /// The creepage.
     fn creepage(&self) -> Result<f64, String> {
         let value = self.number("creepage", "")?;
-        let bare = amounts::bare(self.text("creepage")).is_some();
+        let text = self.text("creepage");
+        let bare = amounts::bare(text).is_some();
         match too_large(value, bare) {
+            None if bare && value.abs() >= MEANT_IN_PER_CENT => Err(format!(
+                "creepage: is {text} meant in per cent? Write `{text}%`, or `{}%`",
+                amounts::short(100.0 * value)
+            )),
             None => Ok(value),
             Some(why) => Err(format!("creepage: {why}")),
         }

@@ -97,6 +97,7 @@ fn what_is_missing_or_does_not_belong_is_named() {
             "creepage: a creepage of 0.6 is more than 0.5",
         ),
         (wheel().with("creepage", "2"), "in per cent write 2 %"),
+        (wheel().with("creepage", "0.5"), "Write `0.5%`, or `50%`"),
         (
             wheel().with("rail-radius", "300"),
             "rail-radius: `300` has no unit; write `300 mm`, or `300 m`",

@@ -61,7 +61,7 @@ impl Case {
             }
             match key_units::of_element(names, place.index, dimension) {
                 Some(unit) => Wanted::In(unit),
-                None => Wanted::AsWritten,
+                None => Wanted::NoNumber,
             }
         })
     }
@@ -273,7 +273,7 @@ mod tests {
                     file.display(),
                     place.names
                 );
-                Wanted::AsWritten
+                Wanted::NoNumber
             });
             marked.unwrap();
             read += 1;

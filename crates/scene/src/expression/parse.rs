@@ -37,17 +37,7 @@ pub(super) fn parse(
     if parser.at < text.len() {
         let rest = parser.rest();
         let found = rest.chars().next().unwrap_or_default();
-        let word = &rest[..rest.find(|c| !continues_name(c)).unwrap_or(rest.len())];
-        let number = parser.text[..parser.at].trim_end();
-        let after_number = number.ends_with(|c: char| c.is_ascii_digit() || c == '.');
         let message = match found {
-            _ if after_number
-                && with_units
-                && names.contains(&word)
-                && units::known(word).is_ok() =>
-            {
-                two_meanings(word)
-            }
             ')' => "this `)` closes nothing".to_owned(),
             ',' => "a decimal comma is written as a point".to_owned(),
             _ => "an operator such as `*` is missing before this".to_owned(),
@@ -85,8 +75,8 @@ enum Factor {
 /// Why a word that is a name and a unit is neither.
 fn two_meanings(word: &str) -> String {
     format!(
-        "`{word}` is a name of this file and a unit: give one of the two parentheses, as in \
-         `(2 mm) * {word}`, or give the name another spelling"
+        "`{word}` is a name of this file and a unit: for the name write `*` or `/` with spaces, \
+         for the unit take another one, or give the name another spelling"
     )
 }
 
@@ -230,9 +220,9 @@ impl<'a> Parser<'a> {
             '(' => {
                 self.at += 1;
                 let (inner, factor) = self.deeper(|p| match before {
-                    Factor::Other => Ok((p.sum()?, Factor::Other)),
                     // The unit below a fraction, `2 mm^3/(N m)`.
-                    _ => p.units_or_sum(before),
+                    Factor::Unit | Factor::Divisor => p.units_or_sum(before),
+                    Factor::Number | Factor::Other => Ok((p.sum()?, Factor::Other)),
                 })?;
                 if !self.take(')') {
                     let message = "this `(` is not closed by `)`".to_owned();
@@ -271,6 +261,13 @@ impl<'a> Parser<'a> {
         let end = self.at;
         let (unit, span) = self.unit();
         if unit.is_empty() {
+            self.blank();
+            let rest = self.rest();
+            let word = &rest[..rest.find(|c| !continues_name(c)).unwrap_or(rest.len())];
+            let both = self.names.contains(&word) && units::known(word).is_ok();
+            if self.with_units && !word.is_empty() && both {
+                return Err(error(self.at..self.at + word.len(), two_meanings(word)));
+            }
             self.at = end;
             let kind = TermKind::Amount(Amount::number(value));
             let span = start..end;
@@ -350,19 +347,19 @@ impl<'a> Parser<'a> {
             return Ok((self.call(word, span)?, Factor::Other));
         }
         self.at = span.end;
-        let named = self.names.contains(&word);
-        let unit = before != Factor::Other && self.with_units && units::known(word).is_ok();
         // `2 N/m` looks like a unit, `2 N / m` like a quotient.
         let mut left = self.text[..start].chars().rev();
         let close = left.next().is_some_and(|c| "*/".contains(c))
             && left.next().is_some_and(|c| !c.is_whitespace());
-        if unit && named && close && before != Factor::Number {
+        let after_unit = matches!(before, Factor::Unit | Factor::Divisor);
+        let unit = after_unit && close && self.with_units && units::known(word).is_ok();
+        if unit && self.names.contains(&word) {
             return Err(error(span, two_meanings(word)));
         }
-        if unit && !named && before == Factor::Divisor {
+        if unit && before == Factor::Divisor {
             return Err(error(span, of_divisor(word)));
         }
-        if unit && !named {
+        if unit {
             self.at = start;
             let (unit, span) = self.unit();
             if let Ok(amount) = Amount::of(1.0, &unit) {

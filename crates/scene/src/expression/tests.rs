@@ -129,6 +129,8 @@ fn errors_say_what_is_wrong_and_where() {
             "there is no function `sqr`; did you mean `sqrt`?",
         ),
         ("2 mmm", "mmm", "`mmm` is not a known unit"),
+        ("2 * s", "s", "a unit stands after a number, `1 s`"),
+        ("2*s", "s", "a unit stands after a number, `1 s`"),
         ("n * kg", "kg", "a unit stands after a number, `1 kg`"),
         ("n *", "*", "a value is missing at the end"),
         ("", "", "an expression is missing"),

@@ -131,6 +131,14 @@ impl MaterialLibrary {
         with_units(Source::read(path)?)
     }
 
+    /// Reads the text of a file, see [`MaterialLibrary::read_file`].
+    ///
+    /// # Errors
+    /// A unit is unknown, or given twice.
+    pub fn read_text(name: &str, text: &str) -> Result<Source, InputError> {
+        with_units(Source::from_text(name, text))
+    }
+
     /// Returns all materials, sorted by the names of their files; files with parameters of laws
     /// alone are none.
     pub fn list(&self) -> Vec<Listed> {
@@ -256,7 +264,7 @@ impl MaterialLibrary {
 fn with_units(mut source: Source) -> Result<Source, InputError> {
     source.replace_quantities(|place| match place.names.last() {
         Some(name) if name == "value" => Wanted::Pair,
-        _ => Wanted::AsWritten,
+        _ => Wanted::NoNumber,
     })?;
     Ok(source)
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::tree::{Entry, Group, Node, Shape, plain};
+use super::tree::{Entry, Group, Node, Shape, plain, unquoted};
 use super::{Format, Source};
 use crate::quantity;
 
@@ -200,14 +200,6 @@ struct Around {
     present: Vec<String>,
     /// Number of values before the place.
     index: usize,
-}
-
-/// The name of a field, or the content of a quoted key.
-fn unquoted(written: &str) -> String {
-    match written.contains('"') {
-        true => ron::from_str(written).unwrap_or_else(|_| written.to_owned()),
-        false => plain(written).to_owned(),
-    }
 }
 
 /// The name at the end of a text, with quotes or without.

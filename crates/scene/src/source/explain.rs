@@ -392,6 +392,7 @@ impl Source {
         let inner = written.trim_matches('"');
         let number = number && quantity::parts(inner).1 == inner.len();
         let unquoted = matches!(node.kind, ValueKind::Text) && expected.starts_with("a name");
+        let unquoted = unquoted && !inner.contains("${");
         let error = error.expected(expected);
         if quotes {
             error.help(format!("write `\"{written}\"`"))

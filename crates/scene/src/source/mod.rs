@@ -39,7 +39,7 @@ pub use cursor::{CursorPlace, CursorSlot, SlotKind};
 pub use diagnostic::InputError;
 pub use difference::{Difference, first_difference};
 pub use file::{MAX_BYTES, open, read_bytes, read_text, read_text_from};
-pub use formats::Format;
+pub use formats::{Format, fields_of};
 pub use names::Names;
 pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};

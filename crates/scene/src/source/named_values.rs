@@ -4,14 +4,14 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
-use super::tree::{Entry, Group, Node, Shape, ValueKind};
+use super::tree::{Entry, Group, Node, Shape, ValueKind, unquoted};
 use super::{InputError, Source};
 use crate::expression::{self, Expression, ExpressionError};
 use crate::quantity;
 use crate::units::Amount;
 
 /// Key of the named values at the top of a text.
-const LET: &str = "let";
+pub(super) const LET: &str = "let";
 
 /// The named values of a text.
 #[derive(Debug, Default)]
@@ -114,8 +114,7 @@ impl Source {
         };
         for entry in &group.entries {
             let key = entry.key.clone().unwrap_or_default();
-            let written = &self.text[key.clone()];
-            let name = ron::from_str(written).unwrap_or_else(|_| written.to_owned());
+            let name = unquoted(&self.text[key.clone()]);
             self.check_name(&name, &key)?;
             out.names.push(name);
             out.keys.push(key);

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::named_values::{NamedValues, has_expression};
-use super::tree::{Entry, Node, Shape, ValueKind, join_path, plain};
+use super::tree::{Entry, Node, Shape, ValueKind, join_path, plain, unquoted};
 use super::{InputError, Source, Tree};
 use crate::units::{Amount, Measure};
 use crate::{quantity, units};
@@ -16,8 +16,9 @@ pub(crate) enum Wanted {
     In(&'static str),
     /// The pair `(value: 10, unit: "us")`, whose unit is checked where its meaning is known.
     Pair,
-    /// The text stays as it is: the schema has no number here, or one of unknown unit.
-    AsWritten,
+    /// The schema has no number here, or one of unknown unit: the text stays as it is, for the
+    /// parser to refuse, and an expression is refused.
+    NoNumber,
 }
 
 /// Position of a number in a text.
@@ -56,16 +57,25 @@ enum Beside {
 impl Source {
     /// Whether a number of the text has a unit, or is an expression.
     pub(crate) fn has_quantities(&self) -> bool {
+        self.any(|node| matches!(node.kind, ValueKind::Quantity(_))) || self.has_expressions()
+    }
+
+    /// Whether the text has names of values, or an expression.
+    fn has_expressions(&self) -> bool {
+        self.has_named_values() || self.any(|node| has_expression(&self.text, node))
+    }
+
+    /// Whether a value of the text is one of these.
+    fn any(&self, wanted: impl Fn(&Node) -> bool) -> bool {
         let mut stack: Vec<&Node> = self.tree.root.iter().collect();
         while let Some(node) = stack.pop() {
-            match &node.kind {
-                ValueKind::Quantity(_) => return true,
-                ValueKind::Group(group) => stack.extend(group.entries.iter().map(|e| &e.value)),
-                _ if has_expression(&self.text, node) => return true,
-                _ => {}
+            if wanted(node) {
+                return true;
             }
+            let group = node.group().into_iter();
+            stack.extend(group.flat_map(|g| &g.entries).map(|e| &e.value));
         }
-        self.has_named_values()
+        false
     }
 
     /// Replaces each number with a unit, `5 um`, by `(value: 5, unit: "um")`, for a schema that
@@ -86,8 +96,15 @@ impl Source {
         &mut self,
         wanted: impl Fn(&Place<'_>) -> Wanted,
     ) -> Result<(), InputError> {
-        // Brackets that do not match would lead to wrong keys; the parser reports them.
-        if self.tree.fault.is_some() || self.tree.too_deep.is_some() {
+        // Brackets that do not match would lead to wrong keys; the parser reports them, unless names
+        // and expressions that were not replaced would keep it from getting there.
+        if let Some(fault) = &self.tree.fault {
+            return match self.has_expressions() {
+                true => Err(self.error_in(&fault.span, fault.message.clone())),
+                false => Ok(()),
+            };
+        }
+        if self.tree.too_deep.is_some() {
             return Ok(());
         }
         let names = self.named_values()?;
@@ -128,11 +145,17 @@ impl Source {
         if self.written.is_none() {
             self.written = Some(self.text.as_str().into());
         }
-        // From the last one on, so that the positions of the others stay valid.
-        for (span, new) in edits.into_iter().rev() {
-            self.source_map.rewrite(&span, new.len());
-            self.text.replace_range(span, &new);
+        let lengths = edits.iter().map(|(span, new)| (span.clone(), new.len()));
+        self.source_map.rewrite_all(&lengths.collect::<Vec<_>>());
+        let mut text = String::with_capacity(self.text.len());
+        let mut at = 0;
+        for (span, new) in edits {
+            text += &self.text[at..span.start];
+            text += &new;
+            at = span.end;
         }
+        text += &self.text[at..];
+        self.text = text;
         self.tree = Tree::of(&self.text);
         Ok(())
     }
@@ -148,7 +171,7 @@ impl Source {
         let number = &self.text[number.clone()];
         let unit = &self.text[place.clone()];
         Ok(match (wanted, found.beside) {
-            (Wanted::AsWritten, _) => None,
+            (Wanted::NoNumber, _) => None,
             (Wanted::Pair, Some(Beside::Unit)) => {
                 let message = "the number has a unit, and there is a `unit` beside it";
                 return Err(self.error_in(place, message).expected("one of the two"));
@@ -184,11 +207,11 @@ impl Source {
         names: &NamedValues,
         wanted: Wanted,
     ) -> Result<Option<String>, InputError> {
-        let amount = match wanted {
-            Wanted::AsWritten => None,
-            _ => self.amount_of(node, names)?,
-        };
-        let Some((Amount { value, measure }, written)) = amount else {
+        if wanted == Wanted::NoNumber {
+            let message = format!("{} takes no expression", self.key_of(found));
+            return Err(self.error_in(&node.span, message));
+        }
+        let Some((Amount { value, measure }, written)) = self.amount_of(node, names)? else {
             names.use_in_text(&self.text[node.span.clone()]);
             return match wanted {
                 Wanted::In(_) => {
@@ -242,7 +265,7 @@ impl Source {
                 );
                 Err(self.error_in(&node.span, message))
             }
-            (Wanted::AsWritten, _) => Ok(None),
+            (Wanted::NoNumber, _) => Ok(None),
         }
     }
 
@@ -321,11 +344,7 @@ fn collect<'t>(text: &str, node: &'t Node, names: &mut Vec<String>, out: &mut Ve
 
 /// The name of a field, or the key of a map without its quotes.
 fn key(text: &str, entry: &Entry) -> Option<String> {
-    let written = &text[entry.key.clone()?];
-    Some(match written.starts_with(['"', 'r']) {
-        true => ron::from_str(written).unwrap_or_else(|_| plain(written).to_owned()),
-        false => written.to_owned(),
-    })
+    Some(unquoted(&text[entry.key.clone()?]))
 }
 
 /// Words for common units of the schema, as the end of a sentence: "a time".

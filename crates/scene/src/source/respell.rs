@@ -20,6 +20,9 @@ enum Change {
     Tuple,
     /// `0.1` becomes `Constant(0.1)`.
     Constant,
+    /// `(value: 3, unit: "1")`, which the expression `"${1 + 2}"` became, is 3 where things are
+    /// counted.
+    Count,
 }
 
 const CONSTANT: &str = "Constant(";
@@ -53,6 +56,9 @@ impl Source {
                 | RonError::NoSuchEnumVariant { .. },
                 ValueKind::Number,
             ) => Some(Change::Constant),
+            (RonError::ExpectedInteger, ValueKind::Group(_)) => {
+                self.count_of(&node.span).map(|_| Change::Count)
+            }
             _ => None,
         }?;
         let mut alike = Vec::new();
@@ -69,6 +75,14 @@ impl Source {
         let pass = match change {
             Change::Constant => node.span.end + added * (before + 1) - 1,
             Change::List | Change::Tuple => node.span.start,
+            Change::Count => {
+                let shorter = |span: &Range<usize>| {
+                    let new = self.count_of(span).map_or(0, str::len);
+                    span.len() - new
+                };
+                let before = alike.iter().filter(|s| s.start < node.span.start);
+                node.span.start - before.map(shorter).sum::<usize>()
+            }
         };
         let mut other = self.clone();
         // Values are rewritten from the last one on, so that the positions of the others stay
@@ -141,6 +155,7 @@ impl Source {
                 }
                 (ValueKind::Group(group), Change::Tuple) => group.shape == Shape::List,
                 (ValueKind::Number, Change::Constant) => true,
+                (ValueKind::Group(_), Change::Count) => self.count_of(&node.span).is_some(),
                 _ => false,
             };
             if fits {
@@ -159,12 +174,25 @@ impl Source {
         }
     }
 
+    /// The whole number of a pair that an expression without a unit became.
+    fn count_of(&self, span: &Range<usize>) -> Option<&str> {
+        let inner = self.text[span.clone()].strip_prefix("(value: ")?;
+        let number = inner.strip_suffix(", unit: \"1\")")?;
+        number.parse::<i64>().is_ok().then_some(number)
+    }
+
     fn write(&mut self, span: &Range<usize>, change: Change) {
         match change {
             Change::Constant => {
                 for (at, text) in [(span.end, ")"), (span.start, CONSTANT)] {
                     self.source_map.insert(at, text.len());
                     self.text.insert_str(at, text);
+                }
+            }
+            Change::Count => {
+                if let Some(new) = self.count_of(span).map(str::to_owned) {
+                    self.source_map.rewrite_all(&[(span.clone(), new.len())]);
+                    self.text.replace_range(span.clone(), &new);
                 }
             }
             // Both kinds of brackets have one byte, so no position changes.

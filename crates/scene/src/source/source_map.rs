@@ -66,7 +66,12 @@ impl SourceMap {
 
     /// Returns the location of a range of the text in use.
     pub fn place(&self, span: &Range<usize>) -> RangeLocation {
-        let (start, first) = self.range_at(span.start);
+        self.place_in(span, &self.starts())
+    }
+
+    /// Returns the location of a range of the text in use, where the ranges begin at `starts`.
+    fn place_in(&self, span: &Range<usize>, starts: &[usize]) -> RangeLocation {
+        let (start, first) = self.range_at(span.start, starts);
         match &first.from {
             RangeOrigin::Set {
                 set,
@@ -96,7 +101,8 @@ impl SourceMap {
             },
             RangeOrigin::File(file) => {
                 let begin = file + (span.start - start).min(first.length);
-                let (last_start, last) = self.range_at(span.end.saturating_sub(1).max(span.start));
+                let (last_start, last) =
+                    self.range_at(span.end.saturating_sub(1).max(span.start), starts);
                 let end = match &last.from {
                     RangeOrigin::File(file) => {
                         file + (span.end - last_start.min(span.end)).min(last.length)
@@ -115,20 +121,17 @@ impl SourceMap {
 
     /// Returns the range that contains a byte (the last one, for the end of the text), and its
     /// start.
-    fn range_at(&self, at: usize) -> (usize, &SourceRange) {
-        let mut start = 0;
-        for piece in &self.0 {
-            if at < start + piece.length {
-                return (start, piece);
-            }
-            start += piece.length;
-        }
+    fn range_at(&self, at: usize, starts: &[usize]) -> (usize, &SourceRange) {
         const NOTHING: &SourceRange = &SourceRange {
             length: 0,
             from: RangeOrigin::File(0),
         };
-        let last = self.0.last().unwrap_or(NOTHING);
-        (start - last.length, last)
+        let k = starts.partition_point(|start| *start <= at);
+        let k = k.saturating_sub(1);
+        match (self.0.get(k), starts.get(k)) {
+            (Some(piece), Some(start)) => (*start, piece),
+            _ => (0, NOTHING),
+        }
     }
 
     /// Records text inserted by the parser before a byte.
@@ -177,18 +180,55 @@ impl SourceMap {
         self.splice(range, parts.collect());
     }
 
-    /// Records that the parser wrote `length` bytes in place of `range`, which keep its location.
-    pub fn rewrite(&mut self, range: &Range<usize>, length: usize) {
-        let place = self.place(range);
-        let from = match place.set {
-            Some((set, argument)) => RangeOrigin::Set {
-                set,
-                argument,
-                landed: place.span,
-            },
-            None => RangeOrigin::InPlaceOf(place.span),
+    /// Replaces ranges of the text, in their order and apart from each other, by texts of these
+    /// lengths that stand for them.
+    pub fn rewrite_all(&mut self, edits: &[(Range<usize>, usize)]) {
+        let starts = self.starts();
+        let mut pieces = Vec::with_capacity(self.0.len() + 2 * edits.len());
+        let mut k = 0;
+        let mut copy = |pieces: &mut Vec<SourceRange>, from: usize, to: usize| {
+            while let Some(piece) = self.0.get(k) {
+                let (start, end) = (starts[k], starts[k] + piece.length);
+                let (begin, stop) = (from.max(start), to.min(end));
+                if begin < stop {
+                    pieces.push(piece.part(begin - start, stop - begin));
+                }
+                if end > to {
+                    break;
+                }
+                k += 1;
+            }
         };
-        self.splice(range, vec![SourceRange { length, from }]);
+        let mut at = 0;
+        for (range, length) in edits {
+            copy(&mut pieces, at, range.start);
+            let from = match self.place_in(range, &starts) {
+                RangeLocation {
+                    span,
+                    set: Some((set, argument)),
+                } => RangeOrigin::Set {
+                    set,
+                    argument,
+                    landed: span,
+                },
+                RangeLocation { span, .. } => RangeOrigin::InPlaceOf(span),
+            };
+            let length = *length;
+            pieces.push(SourceRange { length, from });
+            at = range.end;
+        }
+        copy(&mut pieces, at, usize::MAX);
+        self.0 = pieces;
+    }
+
+    /// The byte at which each range begins.
+    fn starts(&self) -> Vec<usize> {
+        let begin = |at: &mut usize, piece: &SourceRange| {
+            let start = *at;
+            *at += piece.length;
+            Some(start)
+        };
+        self.0.iter().scan(0, begin).collect()
     }
 
     fn splice(&mut self, range: &Range<usize>, parts: Vec<SourceRange>) {

@@ -376,18 +376,18 @@ impl Group {
     fn label(&self, text: &str, index: usize) -> Option<String> {
         let entry = self.entries.get(index)?;
         match (&entry.key, self.shape) {
-            (Some(key), _) => {
-                let written = &text[key.clone()];
-                let unquoted = || ron::from_str::<String>(written).ok();
-                written
-                    .contains('"')
-                    .then(unquoted)
-                    .flatten()
-                    .or_else(|| Some(plain(written).to_owned()))
-            }
+            (Some(key), _) => Some(unquoted(&text[key.clone()])),
             (None, Shape::List) => entry.value.field(text, "name")?.string(text),
             (None, _) => None,
         }
+    }
+}
+
+/// The name of a field, or the content of a quoted key.
+pub(super) fn unquoted(written: &str) -> String {
+    match written.contains('"') {
+        true => ron::from_str(written).unwrap_or_else(|_| written.to_owned()),
+        false => plain(written).to_owned(),
     }
 }
 

@@ -36,6 +36,34 @@ impl Format {
     }
 }
 
+/// Returns the names of the fields of a text in the format of its file's name, as far as it is
+/// well formed.
+pub fn fields_of(path: &Path, text: &str) -> Vec<String> {
+    let tree = |text: &str| {
+        let tree = super::Tree::of(text);
+        let group = tree.root.as_ref().and_then(super::Node::group);
+        let keys = group.into_iter().flat_map(|g| &g.entries);
+        let names = keys.filter_map(|e| Some(super::tree::unquoted(&text[e.key.clone()?])));
+        names.collect()
+    };
+    let format = Format::of(path);
+    if format == Format::Ron {
+        return tree(text);
+    }
+    match read::read("", text, format).map(|item| item.kind) {
+        Ok(item::ItemKind::Object(entries)) => {
+            entries.into_iter().map(|(key, _)| key.name).collect()
+        }
+        Ok(_) => Vec::new(),
+        // While it is being written: words at the beginnings of lines.
+        Err(_) => {
+            let names = text.lines().filter_map(|line| line.split_once(':'));
+            let names = names.map(|(name, _)| name.trim().trim_matches('"').to_owned());
+            names.collect()
+        }
+    }
+}
+
 impl Source {
     /// Reads the file of a `T`, as RON, JSON or YAML by the ending of its name.
     ///

@@ -2,7 +2,7 @@
 
 use super::item::{Item, ItemKind, Key, Text};
 use crate::quantity;
-use crate::source::tree::{Group, Node, Shape, ValueKind, plain};
+use crate::source::tree::{Group, Node, Shape, ValueKind, plain, unquoted};
 use crate::source::{InputError, Source};
 
 /// Returns a value of a well-formed text: variants become objects with one key, `Some(x)` is `x`,
@@ -46,11 +46,7 @@ fn group_of(source: &Source, group: &Group) -> Result<ItemKind, InputError> {
         (Shape::Struct | Shape::Map, ..) => {
             let keys = entries.iter().map(|e| e.key.clone().unwrap_or_default());
             let keys = keys.map(|span| {
-                let written = &source.text()[span.clone()];
-                let name = match written.contains('"') {
-                    true => ron::from_str(written).unwrap_or_else(|_| written.to_owned()),
-                    false => plain(written).to_owned(),
-                };
+                let name = unquoted(&source.text()[span.clone()]);
                 Key { name, span }
             });
             ItemKind::Object(keys.zip(items()?).collect())

@@ -1,5 +1,6 @@
 //! JSON and YAML texts as trees of values with their places.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use saphyr_parser::{Event, Parser, ScalarStyle, Span};
@@ -28,7 +29,12 @@ pub(super) fn read(file: &str, text: &str, format: Format) -> Result<Item, Input
     for event in Parser::new_from_str(text) {
         let (event, span) = event.map_err(|error| {
             let at = reader.byte(error.marker().index());
-            let message = format!("this is no YAML: {}", error.info());
+            let name = if format == Format::Json {
+                "JSON"
+            } else {
+                "YAML"
+            };
+            let message = format!("this is no {name} that can be read: {}", error.info());
             InputError::at(file, text, at..at + 1, message)
         })?;
         if matches!(event, Event::DocumentStart(_)) {
@@ -79,6 +85,8 @@ struct Open {
     entries: Vec<Item>,
     /// Keys of an object; none for a list.
     keys: Option<Vec<Key>>,
+    /// The bytes at which the keys begin, by their names.
+    places: HashMap<String, usize>,
 }
 
 struct Reader<'a> {
@@ -147,6 +155,7 @@ impl Reader<'_> {
             span: span.start..span.start + 1,
             entries: Vec::new(),
             keys,
+            places: HashMap::new(),
         });
         Ok(())
     }
@@ -175,21 +184,16 @@ impl Reader<'_> {
         span: Range<usize>,
     ) -> Result<(), InputError> {
         if self.awaits_key() {
-            let open = self.open.last();
-            let mut keys = open
-                .and_then(|open| open.keys.as_ref())
-                .into_iter()
-                .flatten();
-            if let Some(first) = keys.find(|key| key.name == content) {
-                let before = self.text[..first.span.start].matches('\n').count() + 1;
+            let first = self.open.last().and_then(|open| open.places.get(content));
+            if let Some(first) = first {
+                let before = self.text[..*first].matches('\n').count() + 1;
                 let message = format!("the key `{content}` is given twice, first in line {before}");
                 return Err(self.refuse(span, message).help("remove one of the two"));
             }
-            if let Some(keys) = self.open.last_mut().and_then(|open| open.keys.as_mut()) {
-                keys.push(Key {
-                    name: content.to_owned(),
-                    span,
-                });
+            if let Some(open) = self.open.last_mut() {
+                let name = content.to_owned();
+                open.places.insert(name.clone(), span.start);
+                open.keys.get_or_insert_default().push(Key { name, span });
             }
             return Ok(());
         }

@@ -265,3 +265,41 @@ fn a_converted_text_keeps_names_units_and_expressions() {
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json, serde_json::json!([0.5, 5.0, 1000, -7, 1e3, "inf"]));
 }
+
+#[test]
+fn names_and_mistakes_before_other_fields_are_where_they_are() {
+    let yaml = YAML.replace(
+        "let: {p0: 1.12 GPa, L: 2 mm}",
+        "let: {L: 2 * k, k: 1 mm, p0: 560 * 2 MPa}",
+    );
+    assert_ne!(yaml, YAML);
+    let (one, other) = (
+        read("a.yaml", YAML, &[]).unwrap(),
+        read("a.yaml", &yaml, &[]).unwrap(),
+    );
+    assert_eq!(
+        format!("{:?}", one.bodies[0].dofs),
+        format!("{:?}", other.bodies[0].dofs)
+    );
+    for (first, words) in [
+        ("sed: 3", "unknown field `sed`"),
+        ("seed: 1.5", "seed"),
+        ("doc: 12", "doc"),
+    ] {
+        let text = format!("{first}\n{YAML}");
+        let error = read("a.yaml", &text, &[]).unwrap_err();
+        assert!(error.message.contains(words), "{first}: {error}");
+        assert_eq!(error.position().unwrap().0, 1, "{first}: {error}");
+    }
+    let sourced = JSON.replace("\"30 %\"", "{\"value\": \"30 %\", \"source\": \"own\"}");
+    assert_ne!(sourced, JSON);
+    let case = read("a.json", &sourced, &[]).unwrap();
+    let mu = case.interfaces[0]
+        .parameters
+        .iter()
+        .find_map(|(_, all)| all.get("mu"));
+    assert_eq!(
+        (mu.unwrap().value, mu.unwrap().unit.as_deref()),
+        (30.0, Some("%"))
+    );
+}

@@ -191,3 +191,75 @@ fn mistakes_are_errors_at_their_places() {
     let sum = read(&CASE.replace("\"${tan(phi)}\"", "\"${phi}\""), &[]).unwrap();
     assert_eq!(parameter(&sum, "mu").1.as_deref(), Some("rad"));
 }
+
+#[test]
+fn a_name_that_is_set_is_there() {
+    for (set, words) in [
+        ("let.l=1 mm", "`let` has no name `l`"),
+        ("let.new=3", "`let` has no name `new`"),
+        ("time.end=${2 * h}", "`h`"),
+        ("time.end=${2*h}", "`h`"),
+        ("name=${L}", "`name` takes no expression"),
+    ] {
+        let error = read(CASE, &[set]).unwrap_err().to_string();
+        assert!(error.contains(words), "{set}: {error}");
+    }
+    let none = CASE.replace("let: {", "lett: {");
+    let error = read(&none, &["let.L=1 mm"]).unwrap_err().to_string();
+    assert!(
+        error.contains("the file has no name `L` in `let`"),
+        "{error}"
+    );
+    let named = CASE.replace("\"a lid\"", "\"a lid ${L}\"");
+    let error = read(&named, &[]).unwrap_err();
+    assert!(
+        error.message.contains("`name` takes no expression"),
+        "{error}"
+    );
+}
+
+#[test]
+fn an_open_bracket_is_the_error_and_not_what_follows() {
+    let open = CASE.replacen("dofs: (y:", "dofs: y:", 1);
+    let error = read(&open, &[]).unwrap_err();
+    let line = CASE.lines().position(|l| l.contains("dofs:")).unwrap() + 1;
+    assert!(error.position().unwrap().0 >= line, "{error}");
+    let whole = CASE.strip_suffix(')').unwrap();
+    let error = read(whole, &[]).unwrap_err();
+    assert!(error.message.contains("not closed"), "{error}");
+}
+
+#[derive(Debug, serde::Deserialize)]
+struct Counted {
+    cells: u32,
+    both: (u16, u16),
+    load: crate::material::NumberSpec,
+}
+
+#[test]
+fn files_that_pair_numbers_with_units_count_by_expressions_too() {
+    for (name, text) in [
+        (
+            "a.ron",
+            "(let: {\"n\": 4, \"P\": 2 kN}, cells: \"${2 * n}\", both: (\"${n}\", 3), load: \"${P / 2}\")",
+        ),
+        (
+            "a.yaml",
+            "let: {n: 4, P: 2 kN}\ncells: ${2 * n}\nboth: [\"${n}\", 3]\nload: ${P / 2}\n",
+        ),
+        (
+            "a.json",
+            r#"{"$schema": "b.json", "let": {"n": 4, "P": "2 kN"}, "cells": "${2 * n}", "both": ["${n}", 3], "load": "${P / 2}"}"#,
+        ),
+    ] {
+        let mut source = Source::text_as::<Counted>(name, text).unwrap();
+        source.pair_quantities().unwrap();
+        let found: Counted = source.parse().unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!((found.cells, found.both), (8, (4, 3)), "{name}");
+        assert_eq!(
+            (found.load.value, found.load.unit.as_deref()),
+            (1000.0, Some("N")),
+            "{name}"
+        );
+    }
+}

@@ -21,6 +21,8 @@ pub(super) struct Fields<'a, 'f> {
     pub(super) out: &'a RefCell<Out<'f>>,
     pub(super) state: &'a Cell<Progress>,
     pub(super) quoted: bool,
+    /// Whether these are the fields of the file.
+    pub(super) root: bool,
 }
 
 impl<'de> MapAccess<'de> for Fields<'_, '_> {
@@ -30,9 +32,19 @@ impl<'de> MapAccess<'de> for Fields<'_, '_> {
         &mut self,
         seed: K,
     ) -> Result<Option<K::Value>, Error> {
-        let next = self.state.get().next;
-        let Some((key, _)) = self.entries.get(next) else {
-            return Ok(None);
+        let mut next = self.state.get().next;
+        let key = loop {
+            let Some((key, item)) = self.entries.get(next) else {
+                return Ok(None);
+            };
+            if !self.root || !self.out.borrow_mut().root_field(key, item) {
+                break key;
+            }
+            next += 1;
+            self.state.set(Progress {
+                next,
+                key_written: false,
+            });
         };
         self.out.borrow_mut().key(key, self.quoted);
         self.state.set(Progress {

@@ -114,6 +114,7 @@ impl<'a, 'f> Writer<'a, 'f> {
         brackets: [&str; 2],
         quoted: bool,
     ) -> Result<V::Value, Error> {
+        let root = self.out.borrow().text.is_empty();
         self.push(brackets[0]);
         let state = Cell::new(Progress::default());
         let found = visitor.visit_map(Fields {
@@ -121,12 +122,16 @@ impl<'a, 'f> Writer<'a, 'f> {
             out: self.out,
             state: &state,
             quoted,
+            root,
         });
         // What the type did not take is written too.
         let Progress { next, key_written } = state.get();
         let mut out = self.out.borrow_mut();
         let begun = usize::from(key_written);
         for (k, (key, item)) in entries.iter().enumerate().skip(next - begun) {
+            if k >= next && root && out.root_field(key, item) {
+                continue;
+            }
             if k >= next {
                 out.key(key, quoted);
             }

@@ -2,6 +2,7 @@
 
 use super::super::item::{Item, ItemKind, Key, Text, is_word};
 use crate::quantity;
+use crate::source::named_values::LET;
 use crate::source::source_map::SourceMap;
 use std::ops::Range;
 
@@ -76,6 +77,33 @@ impl Out<'_> {
         self.push(": ", &key.span);
     }
 
+    /// Writes a field that stands at the root of every file, whatever its type; returns whether
+    /// it is one.
+    pub(super) fn root_field(&mut self, key: &Key, item: &Item) -> bool {
+        match key.name.as_str() {
+            // By which editors find the schema.
+            "$schema" => true,
+            LET => {
+                self.key(key, false);
+                match &item.kind {
+                    ItemKind::Object(entries) => {
+                        self.push("{", &item.span);
+                        for (name, value) in entries {
+                            self.key(name, true);
+                            self.guess(value);
+                            self.push(", ", &value.span);
+                        }
+                        self.push("}", &item.span);
+                    }
+                    _ => self.guess(item),
+                }
+                self.push(", ", &item.span);
+                true
+            }
+            _ => false,
+        }
+    }
+
     /// Writes a value by its look.
     pub(super) fn guess(&mut self, item: &Item) {
         let span = &item.span;
@@ -96,6 +124,7 @@ impl Out<'_> {
                 self.push("]", span);
             }
             ItemKind::Object(entries) => {
+                let root = self.text.is_empty();
                 let capital = |(key, _): &(&Key, &Item)| {
                     is_word(&key.name) && key.name.starts_with(char::is_uppercase)
                 };
@@ -110,6 +139,9 @@ impl Out<'_> {
                 let brackets = if fields { ["(", ")"] } else { ["{", "}"] };
                 self.push(brackets[0], span);
                 for (key, item) in entries {
+                    if root && self.root_field(key, item) {
+                        continue;
+                    }
                     self.key(key, !fields);
                     self.guess(item);
                     self.push(", ", &item.span);
