@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::ops::Range;
 
 use super::tree::{Entry, Group, Node, Shape, ValueKind, unquoted};
-use super::{InputError, Source};
+use super::{InputError, Source, nearest};
 use crate::expression::{self, Expression, ExpressionError};
 use crate::quantity;
 use crate::units::Amount;
@@ -271,21 +271,21 @@ impl Source {
     }
 
     /// Refuses names that no expression uses, which are mostly misspelt. A `--set` may have taken
-    /// the place of the expression that used a name.
+    /// the place of the expression that used a name of the file.
     pub(super) fn refuse_unused(&self, names: &NamedValues) -> Result<(), InputError> {
         let used = names.used.borrow();
-        let unused = used.iter().position(|used| !used);
-        match unused.filter(|_| self.sets.is_empty()) {
-            None => Ok(()),
-            Some(k) => {
-                let message = format!("`{}` is not used by any expression", names.names[k]);
-                let error = self.error_in(&names.keys[k], message);
-                Err(error.help(format!(
-                    "use it, `\"${{{}}}\"`, or remove it",
-                    names.names[k]
-                )))
-            }
-        }
+        let set = |k: usize| self.source_map.place(&names.keys[k]).set.is_some();
+        let unused = |k: &usize| !used[*k] && (self.sets.is_empty() || set(*k));
+        let Some(k) = (0..used.len()).find(unused) else {
+            return Ok(());
+        };
+        let name = &names.names[k];
+        let others = names.names.iter().zip(used.iter());
+        let others = others.filter(|(_, used)| **used).map(|(n, _)| n.as_str());
+        let message = format!("`{name}` is not used by any expression");
+        let error = self.error_in(&names.keys[k], message);
+        let error = error.help(format!("use it, `\"${{{name}}}\"`, or remove it"));
+        Err(error.did_you_mean(nearest(name, others)))
     }
 }
 

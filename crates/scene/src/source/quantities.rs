@@ -96,8 +96,8 @@ impl Source {
         &mut self,
         wanted: impl Fn(&Place<'_>) -> Wanted,
     ) -> Result<(), InputError> {
-        // Brackets that do not match would lead to wrong keys; the parser reports them, unless names
-        // and expressions that were not replaced would keep it from getting there.
+        // Brackets that do not match would lead to wrong keys; the parser reports them, unless
+        // names and expressions that were not replaced would keep it from getting there.
         if let Some(fault) = &self.tree.fault {
             return match self.has_expressions() {
                 true => Err(self.error_in(&fault.span, fault.message.clone())),

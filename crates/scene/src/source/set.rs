@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use serde::de::DeserializeOwned;
 
-use super::named_values::{LET, has_expression};
-use super::nearest::nearest;
+use super::named_values::has_expression;
 use super::schema::{self, Level};
 use super::tree::{Node, Shape, Tree, ValueKind, join_path, split_path};
 use super::{InputError, Source, scan};
@@ -153,19 +152,6 @@ impl Source {
             Ok(node) => {
                 let (span, new) = replacement(&self.text, node, &wanted)?;
                 self.edit(&wanted, span, &[(&new, &wanted.value)]);
-            }
-            Err(missing) if wanted.path[0] == LET && wanted.path.len() > 1 => {
-                let name = &wanted.path[1];
-                let error = match missing.choices.as_slice() {
-                    names if missing.depth == 1 && !names.is_empty() => {
-                        let near = nearest(name, names.iter().map(String::as_str));
-                        let message = format!("`let` has no name `{name}`");
-                        let error = wanted.fail(message).did_you_mean(near);
-                        error.expected(names.join(", "))
-                    }
-                    _ => wanted.fail(format!("the file has no name `{name}` in `let`")),
-                };
-                return Err(error);
             }
             Err(missing) => {
                 let root = self.tree.root.as_ref();
