@@ -2,6 +2,7 @@
 
 use super::fretting::cycles::History;
 use super::fretting::map::FrettingMap;
+use super::fretting::measured_loops::MeasuredLoop;
 use super::method::Method;
 use super::profiles::Contact;
 use super::rolling::comparison::Comparison;
@@ -58,6 +59,9 @@ pub struct Answer {
     pub points: Vec<Point>,
     /// Curves and measurements beside the adhesion of the points.
     pub comparisons: Vec<Comparison>,
+    /// Measured loops beside those of the strokes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub loops: Vec<MeasuredLoop>,
     /// Bodies after many passages.
     pub passages: Option<Worn>,
     /// Strokes over many cycles.

@@ -130,6 +130,11 @@ fn solve_under(
     }
     let mut creepages = rolling::creepages(file)?;
     let (frets, drives) = fretting::strokes(file)?;
+    let loops = fretting::measured_loops::read(file)?;
+    if frets.is_none() && !loops.is_empty() {
+        let why = "measured loops stand beside strokes: `motion: Fretting(...)`";
+        return Err(file.source.error_at("loops", why).into());
+    }
     let map = frets.and_then(|spec| Some((spec, spec.map.as_ref()?)));
     if map.is_some() {
         one_load(file, "a patch with a `map` over loads of its own")?;
@@ -187,6 +192,7 @@ fn solve_under(
     let comparisons = comparison::comparisons(file, &setup, &points)?;
     let mut answer = numbers(file, &setup, &first, points);
     answer.comparisons = comparisons;
+    answer.loops = loops;
     let (worn, course) = worn.unzip();
     answer.passages = worn;
     if let Some(spec) = frets {
@@ -243,6 +249,7 @@ fn numbers(file: &PatchFile, setup: &Setup, pressure: &Pressure, points: Vec<Poi
         third_body: None,
         points,
         comparisons: Vec::new(),
+        loops: Vec::new(),
         passages: None,
         cycles: Vec::new(),
         map: None,

@@ -141,6 +141,10 @@ fn loops(outcome: &Outcome) -> Option<Section> {
         let points = stroke.curve().iter().map(|[d, q]| (1e6 * d, *q)).collect();
         chart = chart.with(Series::new(quantity(amplitude, "m"), points));
     }
+    for measured in &outcome.answer.loops {
+        let points = measured.points.iter().map(|[d, q]| (1e6 * d, *q)).collect();
+        chart = chart.with(Series::new(&measured.name, points).style(Style::Markers));
+    }
     let any = !outcome.strokes.is_empty();
     any.then(|| section("Loops", vec![figure(chart)]))
 }

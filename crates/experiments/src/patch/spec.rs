@@ -1,5 +1,6 @@
 //! The file of a patch.
 
+use super::fretting::measured_loops::LoopSpec;
 use super::fretting::spec::FrettingSpec;
 use super::method::Method;
 use super::profiles::ProfilesSpec;
@@ -93,6 +94,9 @@ pub struct PatchSpec {
     /// Measured adhesion beside the curve of the patch.
     #[serde(default)]
     pub measured: Vec<MeasuredSpec>,
+    /// Measured loops beside those of the strokes.
+    #[serde(default)]
+    pub loops: Vec<LoopSpec>,
     /// Number of cells along each side of the grid, which is a tenth larger than the patch, or more
     /// if they are few.
     #[serde(default = "cells")]

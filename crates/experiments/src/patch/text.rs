@@ -81,6 +81,10 @@ impl Answer {
             out.push('\n');
             out.push_str(&other.text());
         }
+        for measured in &self.loops {
+            out.push('\n');
+            out.push_str(&measured.text());
+        }
         if let Some(worn) = &self.passages {
             let count = number(worn.end.passages, 4);
             let _ = write!(

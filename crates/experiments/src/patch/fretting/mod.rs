@@ -4,6 +4,7 @@ pub mod cycles;
 mod cycles_shown;
 pub mod map;
 mod map_shown;
+pub mod measured_loops;
 pub mod spec;
 #[cfg(test)]
 mod tests;

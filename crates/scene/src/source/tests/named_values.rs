@@ -191,8 +191,8 @@ fn mistakes_are_errors_at_their_places() {
 #[test]
 fn a_name_that_is_set_is_there() {
     for (set, words) in [
-        ("let.l=1 mm", "`let` has no name `l`"),
-        ("let.new=3", "`let` has no name `new`"),
+        ("let.l=1 mm", "did you mean `L`?"),
+        ("let.new=3", "`new` is not used by any expression"),
         ("time.end=${2 * h}", "`h`"),
         ("time.end=${2*h}", "`h`"),
         ("name=${L}", "`name` takes no expression"),
