@@ -47,7 +47,7 @@ pub struct MeasuredLoop {
     pub displacement: f64,
     /// Half of the range of the force (N).
     pub force: f64,
-    /// Energy of a cycle, the area of the loop (J).
+    /// Energy of the last cycle, the area of its loop (J).
     pub energy: f64,
     /// A, the energy over 4 Q delta.
     pub energy_ratio: f64,
@@ -93,14 +93,20 @@ impl MeasuredLoop {
         if points.len() < 3 {
             return None;
         }
-        // The last point is joined to the first one.
-        let pairs = || points.iter().zip(points.iter().cycle().skip(1));
-        let rises = pairs().filter(|(a, b)| a[0] <= middle && b[0] > middle);
-        let cycles = rises.count().max(1);
-        let area: f64 = pairs()
+        let rises =
+            |k: &usize| points[*k][0] <= middle && points[(k + 1) % points.len()][0] > middle;
+        let rises: Vec<usize> = (0..points.len()).filter(rises).collect();
+        // A record begins with the first loading, so that the last cycle is taken; a file with one
+        // cycle is closed from its last point to its first.
+        let last = match rises.as_slice() {
+            [.., from, to] => &points[from + 1..=*to],
+            _ => &points[..],
+        };
+        let pairs = last.iter().zip(last.iter().cycle().skip(1));
+        let area: f64 = pairs
             .map(|(a, b)| 0.5 * (a[1] + b[1]) * (b[0] - a[0]))
             .sum();
-        let energy = area.abs() / cycles as f64;
+        let (energy, cycles) = (area.abs(), rises.len().max(1));
         Some(Self {
             name,
             points,
@@ -117,7 +123,7 @@ impl MeasuredLoop {
         let mut out = format!("measured: {}", self.name);
         let cycles = match self.cycles {
             1 => String::new(),
-            n => format!(", mean of {n} cycles"),
+            n => format!(", the last of {n}"),
         };
         add_line(&mut out, "amplitude", &quantity(self.displacement, "m"));
         add_line(&mut out, "force", &quantity(self.force, "N"));
@@ -145,7 +151,9 @@ mod tests {
             [-delta, -q],
         ];
         for count in [1, 3] {
-            let points = cycle.repeat(count);
+            // The first loading, where there are several.
+            let mut points = vec![[0.0, 0.0]; usize::from(count > 1)];
+            points.extend(cycle.repeat(count));
             let found = MeasuredLoop::of("rig".into(), points).unwrap();
             let energy = 4.0 * q * (delta - lag);
             assert!((found.energy / energy - 1.0).abs() < 1e-12, "{found:?}");
