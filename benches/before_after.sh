@@ -25,7 +25,7 @@ else
     git worktree add --quiet --detach "$tree" "$rev"
 fi
 # This bench times both, also a revision that did not have it.
-cp benches/stages.rs "$tree/benches/stages.rs"
+cp -r benches/stages.rs benches/support "$tree/benches/"
 grep -q 'name = "stages"' "$tree/Cargo.toml" ||
     printf '\n[[bench]]\nname = "stages"\nharness = false\n' >>"$tree/Cargo.toml"
 

@@ -19,6 +19,8 @@
 //! springs. `STEPS` is the number of timed steps (200), `GROWTH` the ratio of the heights of
 //! neighbouring rows of a `Block` (1.25).
 
+mod support;
+
 use cpu_time::ThreadTime;
 use fretwork::bodies::{DynamicalSystem, SystemStep};
 use fretwork::geometry::space::Dim2;
@@ -408,6 +410,7 @@ fn time(mut call: impl FnMut()) -> f64 {
 }
 
 fn main() {
+    support::refuse_unoptimised();
     let coulomb = std::env::args().skip(1).any(|a| a == "coulomb");
     let steps = number("STEPS", 200.0) as usize;
     let warm = number("WARM", WARM);

@@ -5,6 +5,8 @@
 //! the minimum of several rounds is used, to reduce the influence of other load on the machine.
 //! `pieces` times the narrow phase of polyhedra, by pairs.
 
+mod support;
+
 #[path = "../tests/support/features.rs"]
 mod features;
 
@@ -44,6 +46,7 @@ struct Trial<S: Space> {
 }
 
 fn main() {
+    support::refuse_unoptimised();
     let wanted = std::env::args().skip(1).find(|a| !a.starts_with('-'));
     if wanted.as_deref() == Some("pieces") {
         pieces();

@@ -10,6 +10,8 @@
 //! longer a minute later. The layout of a process in memory changes its times too, so all processes
 //! are launched several times. One thread is used, as the heat of a step is solved on one.
 
+mod support;
+
 use fretwork::geometry::space::Dim2;
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
@@ -25,6 +27,7 @@ const ONE: &str = "--one";
 const TURN: u32 = 10;
 
 fn main() {
+    support::refuse_unoptimised();
     let asked: Vec<String> = std::env::args().collect();
     if let Some(at) = asked.iter().position(|a| a == ONE) {
         return serve(&asked[at + 1..]);

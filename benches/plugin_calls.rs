@@ -5,6 +5,8 @@
 //! loop over the columns; then the loop runs behind the C interface, called as a run calls it. One
 //! thread.
 
+mod support;
+
 use fretwork::laws::{Call, Kind};
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
@@ -30,6 +32,7 @@ fn least(mut work: impl FnMut(), repeats: usize) -> f64 {
 }
 
 fn main() {
+    support::refuse_unoptimised();
     let path = search_path();
     let plugin = path
         .find(Kind::DAMAGE, "mac")

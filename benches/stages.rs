@@ -13,6 +13,8 @@
 //! the machine affects less. `sweeps` shows whether two revisions do the same.
 //! `benches/before_after.sh` compares two revisions by this bench.
 
+mod support;
+
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;
 use fretwork::in_dimension;
@@ -82,6 +84,7 @@ const CASES: [(&str, &[Stage]); 7] = [
 ];
 
 fn main() {
+    support::refuse_unoptimised();
     let (wanted, threads) = arguments();
     println!(
         "{:<20} {:>7} {:>6} {:>8} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>7}",

@@ -7,6 +7,8 @@
 //! sweep on two threads must give the bits of the sweep on one. Best of many runs, to reduce the
 //! influence of other load. Words of the command line select the problems whose names contain them.
 
+mod support;
+
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, sweeps};
 use fretwork::solve::{ContactForm, Problem};
@@ -58,6 +60,7 @@ struct Machine {
 }
 
 fn main() {
+    support::refuse_unoptimised();
     let wanted = std::env::args().skip(1).find(|a| !a.starts_with('-'));
     let machine = machine();
     println!(
