@@ -22,20 +22,7 @@ def test_every_case_is_the_same_after_python(path):
     assert Case.from_text(case.text, folder=path.parent) == case
 
 
-BALL = """
-name: a ball in the air
-dimension: 2
-let: {g: 9.81 m/s^2, T: 20 ms, R: 10 mm}
-time: {step: "${T / 100}", end: "${T}"}
-gravity: [0, "${-g}"]
-materials: {steel: rail_steel_r260}
-interfaces: []
-grains:
-  - List:
-      material: steel
-      grains: [{at: [0, "${2 * R}"], radius: "${R}"}]
-output: {frames: 0, views: 1, figures: false}
-"""
+BALL = (ROOT / "tests/support/ball.yaml").read_text("utf-8")
 
 
 def test_a_case_in_yaml_with_names_and_expressions(tmp_path):
@@ -52,7 +39,7 @@ def test_a_case_in_yaml_with_names_and_expressions(tmp_path):
     fall = 0.5 * 7850 * np.pi * 0.01**2 * (9.81 * 0.01) ** 2
     assert results.summary["energy"]["kinetic"] == pytest.approx(fall, rel=0.03)
     file.write_text(BALL.replace("T / 100", "R / 100"), encoding="utf-8")
-    with pytest.raises(InputError, match=r"ball.yaml:5:14: .*`time.step` is a time, in `s`, and `R / 100` is in `m`"):
+    with pytest.raises(InputError, match=r"ball.yaml:4:14: .*`time.step` is a time, in `s`, and `R / 100` is in `m`"):
         Case.load(file)
 
 

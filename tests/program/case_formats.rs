@@ -6,19 +6,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-const YAML: &str = r#"name: a ball in the air
-dimension: 2
-let: {g: 9.81 m/s^2, T: 20 ms, R: 10 mm}
-time: {step: "${T / 100}", end: "${T}"}
-gravity: [0, "${-g}"]
-materials: {steel: rail_steel_r260}
-interfaces: []
-grains:
-  - List:
-      material: steel
-      grains: [{at: [0, "${2 * R}"], radius: "${R}"}]
-output: {frames: 0, views: 1, figures: false}
-"#;
+const YAML: &str = include_str!("../support/ball.yaml");
 
 /// What a call prints, which ends with a code.
 fn said(folder: &Path, words: &[&str], code: i32) -> String {

@@ -171,6 +171,8 @@ fn completion_has_fields_variants_laws_parameters_materials_and_units() {
             "coulomb",
         ),
         ("{\"mu\": 0.3}", "{\"|\"}", "mu", "k_n"),
+        // Of another contact law.
+        ("{\"mu\": 0.3}", "{\"|\"}", "mu", "e_n"),
         ("\"rail_steel_r260\"", "\"|\"", "titanium_ti6al4v", "steel"),
         (
             "material: \"steel\"",
