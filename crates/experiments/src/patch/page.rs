@@ -149,12 +149,20 @@ fn loops(outcome: &Outcome) -> Option<Section> {
     any.then(|| section("Loops", vec![figure(chart)]))
 }
 
-/// The maps of some points.
-fn maps(outcome: &Outcome) -> Vec<Section> {
+/// The maps of some points, curves for a line contact.
+pub(super) fn maps(outcome: &Outcome) -> Vec<Section> {
     let grid = &outcome.setup.grid;
     let map = |title: &str, unit: &str, scale: f64, values: Vec<f64>, shown: &[f64]| {
         let touching = (0..grid.len()).filter(|c| shown[*c] > 0.0);
         let touching: Vec<usize> = touching.collect();
+        // Cells of a line contact are as long as the line: drawn to scale they fill no page.
+        if grid.cells[1] == 1 {
+            let row = touching.iter();
+            let row = row.map(|c| (1e3 * grid.middle(*c)[0], scale * values[*c]));
+            let x = Axis::new("along the motion", "mm");
+            let chart = Chart::new(title, x, Axis::new(title, unit));
+            return figure(chart.with(Series::new("", row.collect())));
+        }
         let mut chart = Chart::new(
             title,
             Axis::new("along the motion", "mm"),

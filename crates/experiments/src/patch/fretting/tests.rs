@@ -1,10 +1,11 @@
 //! Fretting by the command: maps, lines, forces and many cycles, against closed forms.
 
 use crate::Error;
-use crate::patch::Outcome;
 use crate::patch::tests::{folder, laws, near, solved};
+use crate::patch::{Outcome, page};
 use crate::patch::{PatchFile, solve};
 use fretwork_rolling::running::Regime;
+use fretwork_view::Block;
 
 const MU: f64 = 0.6;
 
@@ -169,6 +170,21 @@ fn a_cylinder_is_a_strip() {
         2e5 / (std::f64::consts::PI * half),
         0.01,
     );
+    // Pressure, traction and slip are curves, with the pressure of the middle at the top.
+    let sections = page::maps(&outcome);
+    for block in &sections[0].blocks {
+        let Block::Figure(chart) = block else {
+            panic!("{block:?}");
+        };
+        assert!(chart.field.is_none(), "{}", chart.title);
+        let points = &chart.series[0].points;
+        let touching = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
+        near(touching, 1e3 * half, 0.05);
+        if chart.title == "pressure" {
+            let most = points.iter().map(|p| p.1).fold(0.0, f64::max);
+            near(most, 1e-6 * outcome.answer.pressure, 1e-12);
+        }
+    }
     let point = &outcome.answer.points[0];
     // sqrt(1 - Q/(mu P)) of the width sticks.
     let stuck = point.stroke.unwrap().stuck;
