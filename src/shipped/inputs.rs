@@ -1,8 +1,8 @@
 //! The shipped cases, studies, fits and patches: inside the program, so that they run by name
 //! wherever it is installed.
 
+use crate::cache_folder::cache_folder;
 use crate::scene::source::{Source, nearest};
-use etcetera::BaseStrategy;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -279,8 +279,7 @@ fn join(folder: &str, path: &str) -> String {
 fn unpacked() -> io::Result<PathBuf> {
     let mut hasher = DefaultHasher::new();
     FILES.hash(&mut hasher);
-    let folders = etcetera::choose_base_strategy().map_err(io::Error::other)?;
-    let folder = folders.cache_dir().join("fretwork");
+    let folder = cache_folder()?;
     // The hash distinguishes what other versions and other builds carry.
     let name = format!("{}-{:016x}", env!("CARGO_PKG_VERSION"), hasher.finish());
     let done = folder.join(&name);

@@ -21,12 +21,23 @@ fn moduli(more: &str) -> String {
 
 /// A scene whose bodies are of one material with one contact law and its parameters.
 fn built<S: Space>(law: &str, parameters: &str, step: f64, rest: &str) -> Simulation<S> {
+    detected(1e-3, law, parameters, step, rest)
+}
+
+/// The scene with an alert distance (m).
+fn detected<S: Space>(
+    alert: f64,
+    law: &str,
+    parameters: &str,
+    step: f64,
+    rest: &str,
+) -> Simulation<S> {
     let text = format!(
         r#"(
     name: "compliant",
     dimension: {},
     time: (step: {step:e}, end: 1.0),
-    detection: (alert: 1e-3, skin: 5e-3),
+    detection: (alert: {alert:e}, skin: 5e-3),
     materials: {{"grain": "verification_grain"}},
     interfaces: [(name: "all", between: ("grain", "grain"), {law}, parameters: (contact: {{{parameters}}}))],
     output: (frames: 0, views: 0),
@@ -146,6 +157,34 @@ fn an_impact_lasts_and_rebounds_as_hertz_says() {
         let (apart, ..) = impact(restitution, 1e-6);
         near(apart, restitution, 2e-2);
     }
+}
+
+/// An impact of a dozen steps, in each of which the balls move farther than a hundredth of their
+/// radius: each step is solved once, and the alert distance changes nothing.
+#[test]
+fn a_fast_impact_depends_on_no_alert_distance() {
+    let impact = |alert: f64| {
+        let mut s: Simulation<Dim3> = detected(
+            alert,
+            HERTZ,
+            &moduli("restitution: 1.0, mu: 0.3"),
+            4e-5,
+            r#"grains: [List(material: "grain", grains: [
+                (at: [-0.05, 0.0, 0.0], radius: 0.05, velocity: [10.0, 0.0, 0.0]),
+                (at: [0.0495, 0.01, 0.0], radius: 0.05, velocity: [-10.0, 0.0, 0.0])])]"#,
+        );
+        let mut deepest = 0.0f64;
+        for _ in 0..12 {
+            steps(&mut s, 1);
+            let gaps = s.state.network.contacts.iter().map(|c| -c.gap);
+            deepest = gaps.fold(deepest, f64::max);
+        }
+        assert!(deepest > 1e-3, "{deepest:e}");
+        assert_eq!(s.state.network.step_size.repeated_solves, 0);
+        assert_eq!(s.state.network.step_size.passed, 0);
+        (s.state.bodies.velocity[0], s.state.bodies.spin[0])
+    };
+    assert_eq!(impact(1e-4), impact(1e-2));
 }
 
 /// A chain of n balls pressed together between walls: the lowest frequency is 2 sqrt(k/m) sin(pi/(2

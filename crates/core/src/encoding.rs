@@ -18,6 +18,11 @@ impl EncodingError {
     }
 }
 
+/// Formats bytes in hexadecimal.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
+
 /// Serializes a state.
 ///
 /// # Errors

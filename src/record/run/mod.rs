@@ -1,5 +1,6 @@
 //! Runs a scene to its end and records it.
 
+mod certificates;
 mod checkpoints;
 mod clear;
 #[cfg(feature = "view")]

@@ -1,16 +1,18 @@
 //! Metadata of a run: the certification of its laws, and the density of its first bodies.
 
+use super::certificates::Certificates;
 use crate::certify::{Certificate, certify_in_child, certify_parameters};
 use crate::laws::{Interface, Kind, LawError, LoadedLaw, Plugin, SearchPath};
 use crate::record::summary::PluginStamp;
+use std::path::PathBuf;
 
 /// Returns the laws of a run, each listed once, and whether each passes certification with its
 /// parameters. A damage law is tested with its cohesion law if that passes itself, other laws with
 /// plain shipped partners, so that a failure is attributed to the law that causes it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
-    let mut known = CertificateCache {
+    let mut certifier = Certifier {
         path: partners(),
-        found: Vec::new(),
+        certificates: Certificates::kept(file()),
     };
     let mut stamps: Vec<PluginStamp> = Vec::new();
     for interface in laws {
@@ -19,8 +21,8 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
             let partner = interface
                 .cohesion()
                 .filter(|_| stands_beside_cohesion(p.kind))
-                .filter(|cohesion| known.certified(cohesion, None));
-            let certified = known.certified(law, partner);
+                .filter(|cohesion| certifier.certified(cohesion, None));
+            let certified = certifier.certified(law, partner);
             let same = |s: &&mut PluginStamp| {
                 (&s.sha256, &s.name) == (&p.sha256, &p.name) && s.kind == p.kind.word()
             };
@@ -52,6 +54,18 @@ fn partners() -> SearchPath {
     SearchPath::new(&[])
 }
 
+/// Returns the file with the certificates of earlier runs.
+#[cfg(feature = "program")]
+fn file() -> Option<PathBuf> {
+    let folder = crate::cache_folder::cache_folder().ok()?;
+    Some(folder.join("certificates.txt"))
+}
+
+#[cfg(not(feature = "program"))]
+fn file() -> Option<PathBuf> {
+    None
+}
+
 /// Returns the libraries to which a law is linked, each with its SHA-256.
 fn links(p: &Plugin) -> Vec<String> {
     let links = p.links.iter();
@@ -67,41 +81,18 @@ fn stands_beside_cohesion(kind: Kind) -> bool {
         .any(|(partner, _)| *partner == Kind::COHESION)
 }
 
-/// A law with its parameters.
-#[derive(PartialEq)]
-struct Key {
-    kind: Kind,
-    name: String,
-    sha256: String,
-    parameters: Vec<u64>,
-}
-
-impl Key {
-    fn of(law: &LoadedLaw) -> Self {
-        Self {
-            kind: law.plugin.kind,
-            name: law.plugin.name.clone(),
-            sha256: law.plugin.sha256.clone(),
-            parameters: law.parameters.iter().map(|x| x.to_bits()).collect(),
-        }
-    }
-}
-
-/// Certification results of laws and their partners.
-struct CertificateCache {
+/// Tests laws with the shipped partners.
+struct Certifier {
     path: SearchPath,
-    found: Vec<((Key, Option<Key>), bool)>,
+    certificates: Certificates,
 }
 
-impl CertificateCache {
+impl Certifier {
     fn certified(&mut self, law: &LoadedLaw, partner: Option<&LoadedLaw>) -> bool {
-        let key = (Key::of(law), partner.map(Key::of));
-        if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {
-            return *certified;
-        }
         // A foreign law may end the process in which it is tested, or corrupt its memory, so it is
         // tested in a separate process. The shipped laws are certified by the project's tests.
-        let own = |p: &Plugin| self.path.belongs_to_program(p);
+        let path = &self.path;
+        let own = |p: &Plugin| path.belongs_to_program(p);
         let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
         type Test =
             fn(&Plugin, &[f64], Option<&LoadedLaw>, &SearchPath) -> Result<Certificate, LawError>;
@@ -110,9 +101,10 @@ impl CertificateCache {
         } else {
             certify_in_child
         };
-        let made = test(&law.plugin, &law.parameters, partner, &self.path);
-        let certified = made.is_ok_and(|c| c.certified());
-        self.found.push((key, certified));
-        certified
+        let test = || {
+            let made = test(&law.plugin, &law.parameters, partner, path);
+            made.is_ok_and(|c| c.certified())
+        };
+        self.certificates.passes(law, partner, test)
     }
 }

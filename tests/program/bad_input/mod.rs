@@ -10,6 +10,8 @@ mod geometry;
 mod half_space;
 mod heat;
 mod hostile_laws;
+#[cfg(target_os = "linux")]
+mod kept_certificates;
 mod limits;
 #[cfg(target_os = "linux")]
 mod linked;

@@ -4,7 +4,7 @@
 use super::error::LawError;
 use super::kind::Kind;
 use super::library::Plugin;
-use super::linked::hex;
+use crate::encoding::hex;
 use fretwork_abi::LinkedLaw;
 use sha2::{Digest, Sha256};
 use std::ffi::CStr;
@@ -67,6 +67,14 @@ impl BuiltInLaws {
             unsafe { Plugin::from_table(entry.law.table(), path, sha256, true) }
         }))
     }
+}
+
+/// Returns the SHA-256 of the program's own file.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn program_sha256() -> Result<&'static str, LawError> {
+    executable().map(|(_, sha256)| sha256)
 }
 
 /// Returns the path of the program's own file and its SHA-256, computed once.

@@ -9,6 +9,7 @@
 //! search folders that depend on the machine is refused before it is opened; after opening, the
 //! [loaded libraries](Opening) are compared with those that were read.
 
+use crate::encoding::hex;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
@@ -518,9 +519,4 @@ mod linux {
             std::fs::remove_dir_all(&folder).unwrap();
         }
     }
-}
-
-/// Formats bytes in hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }

@@ -42,7 +42,7 @@ mod trial;
 mod trust;
 pub mod watch;
 
-pub use built_in::BuiltInLaws;
+pub use built_in::{BuiltInLaws, program_sha256};
 pub use error::LawError;
 pub use function::Call;
 pub use history::LawHistory;

@@ -2,9 +2,9 @@
 
 use crate::Error;
 use crate::load;
+use fretwork_core::encoding::hex;
 use fretwork_core::program;
 use sha2::{Digest, Sha256};
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// Number of characters of a key.
@@ -73,12 +73,4 @@ impl Keys {
         }
         hex(&hash.finalize())[..LENGTH].to_owned()
     }
-}
-
-fn hex(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(2 * bytes.len());
-    for b in bytes {
-        let _ = write!(text, "{b:02x}");
-    }
-    text
 }

@@ -1,5 +1,6 @@
 //! Identity of a run: the case, materials, laws and files that determine its results bit by bit.
 
+use fretwork_core::encoding::hex;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{Grid, HalfSpace, Node, Store};
 use fretwork_core::in_dimension;
@@ -194,13 +195,6 @@ fn without_depths<S: Space>(state: &State<S>) -> Cow<'_, State<S>> {
         }
     }
     Cow::Owned(state)
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut s, b| {
-        let _ = write!(s, "{b:02x}");
-        s
-    })
 }
 
 /// Writer that hashes what is written to it.

@@ -1,0 +1,62 @@
+//! Certificates that runs keep for the next ones: of the same program, law and parameters only, and
+//! of laws that pass.
+
+use super::trial::{PLANE, Trial, with};
+use std::process::Command;
+
+/// Runs the trial's case, and returns whether its laws are certified and how many certificates are
+/// kept then.
+fn run(trial: &Trial, more: &[&str]) -> (bool, usize) {
+    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .args("run case.ron --json --force --plugin-path .".split(' '))
+        .args(more)
+        .current_dir(trial.path(""))
+        .env("XDG_CACHE_HOME", trial.path("cache"))
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{error}");
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let laws = summary["plugins"].as_array().unwrap();
+    let certified = laws.iter().all(|law| law["certified"] == true);
+    let kept = std::fs::read_to_string(trial.path("cache/fretwork/certificates.txt"));
+    (certified, kept.unwrap_or_default().lines().count())
+}
+
+#[test]
+fn of_shipped_laws_with_their_parameters() {
+    let trial = Trial::new();
+    trial.write("case.ron", PLANE);
+    assert_eq!(run(&trial, &[]), (true, 1));
+    assert_eq!(run(&trial, &[]), (true, 1));
+    let other = "interfaces.grains.parameters.contact.mu=0.31";
+    assert_eq!(run(&trial, &["--set", other]), (true, 2));
+    assert_eq!(run(&trial, &["--set", other]), (true, 2));
+    // What is no certificate is none, and a file that has grown large is begun anew.
+    let file = trial.path("cache/fretwork/certificates.txt");
+    std::fs::write(&file, "\u{fffd} yes\n\n").unwrap();
+    assert_eq!(run(&trial, &[]), (true, 3));
+    std::fs::write(&file, "a line\n".repeat(200_000)).unwrap();
+    assert_eq!(run(&trial, &[]), (true, 1));
+    // Without a place for the file every run certifies.
+    std::fs::remove_dir_all(trial.path("cache")).unwrap();
+    trial.write("cache", "a file");
+    assert_eq!(run(&trial, &[]), (true, 0));
+}
+
+#[test]
+fn of_own_laws_by_their_libraries() {
+    let trial = Trial::new();
+    let case = with(PLANE, r#"contact: "coulomb""#, r#"contact: "own""#);
+    trial.write("case.ron", with(&case, r#"parameters_from: "laws","#, ""));
+    trial.compile_helper("lib", "0.2");
+    trial.compile_linked_law("own", "lib", "$ORIGIN/lib");
+    assert_eq!(run(&trial, &[]), (true, 1));
+    assert_eq!(run(&trial, &[]), (true, 1));
+    trial.compile_helper("lib", "0.25");
+    assert_eq!(run(&trial, &[]), (true, 2));
+    // A law that fails is tested at each run.
+    trial.compile_bad_law("own", "0", "ROUNDS_UP");
+    assert_eq!(run(&trial, &[]), (false, 2));
+    assert_eq!(run(&trial, &[]), (false, 2));
+}
