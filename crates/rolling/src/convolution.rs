@@ -1,8 +1,7 @@
-//! Convolutions over the cells of a patch by Fourier transforms: two components at once, as real
-//! and imaginary part.
+//! Convolutions over the cells of a patch by Fourier transforms.
 
 use crate::fields::{Field, Vector};
-use fretwork_elastic::half_space::{CellGrid, Complex64, Transforms, smooth};
+use fretwork_elastic::half_space::{CellGrid, Complex64, Transforms, without_repeats};
 
 /// Transforms over a table of twice the size of the grid, so that nothing repeats.
 #[derive(Debug)]
@@ -19,13 +18,8 @@ impl Convolution {
     pub fn new(grid: &CellGrid) -> Self {
         Self {
             cells: grid.cells,
-            transforms: Transforms::new(grid.cells.map(|n| smooth(2 * n - 1))),
+            transforms: Transforms::new(grid.cells.map(without_repeats)),
         }
-    }
-
-    /// Returns the number of entries of a table.
-    fn size(&self) -> usize {
-        self.transforms.table().iter().product()
     }
 
     /// Returns the transforms of N functions of the distance in cells, of the displaced cell from
@@ -42,14 +36,11 @@ impl Convolution {
             for i in 0..columns {
                 let values = of([distance(i, 0, columns), distance(j, 1, rows)]);
                 for (table, value) in tables.iter_mut().zip(values) {
-                    table.push(Complex64::from(value));
+                    table.push(value);
                 }
             }
         }
-        tables.map(|mut table| {
-            self.transforms.forward(&mut table);
-            table
-        })
+        tables.map(|table| self.transforms.forward(&table, [columns, rows]))
     }
 
     /// Returns N functions of the wave vector (1 per cell, times 2 pi) over the table.
@@ -62,13 +53,11 @@ impl Convolution {
             };
             std::f64::consts::TAU * signed / all as f64
         };
-        let mut tables = [(); N].map(|()| Vec::with_capacity(columns * rows));
-        for j in 0..rows {
-            for i in 0..columns {
-                let values = of([wave(i, columns), wave(j, rows)]);
-                for (table, value) in tables.iter_mut().zip(values) {
-                    table.push(value);
-                }
+        let mut tables = [(); N].map(|()| Vec::new());
+        for [i, j] in self.transforms.waves() {
+            let values = of([wave(i, columns), wave(j, rows)]);
+            for (table, value) in tables.iter_mut().zip(values) {
+                table.push(value);
             }
         }
         tables
@@ -81,30 +70,31 @@ impl Convolution {
         field: &[Vector],
         map: impl Fn(usize, [Complex64; 2]) -> [Complex64; 2],
     ) -> Field {
-        let [columns, rows] = self.transforms.table();
-        let mut values = vec![Complex64::ZERO; self.size()];
-        for (row, out) in field.chunks(self.cells[0]).zip(values.chunks_mut(columns)) {
-            for (v, out) in row.iter().zip(out) {
-                *out = Complex64::new(v[0], v[1]);
-            }
+        let component = |k: usize| {
+            let values: Vec<f64> = field.iter().map(|v| v[k]).collect();
+            self.transforms.forward(&values, self.cells)
+        };
+        let [mut x, mut y] = [0, 1].map(component);
+        let norm = self.norm();
+        for (k, (x, y)) in x.iter_mut().zip(&mut y).enumerate() {
+            [*x, *y] = map(k, [norm * *x, norm * *y]);
         }
-        self.transforms.forward(&mut values);
-        let norm = 1.0 / self.size() as f64;
-        let half = Complex64::from(0.5 * norm);
-        let mut mapped = vec![Complex64::ZERO; values.len()];
-        for j in 0..rows {
-            let opposite = (rows - j) % rows * columns;
-            for i in 0..columns {
-                // The transform of a real field at -k is the conjugate of that at k.
-                let k = j * columns + i;
-                let (a, b) = (values[k], values[opposite + (columns - i) % columns].conj());
-                let [x, y] = map(k, [(a + b) * half, (a - b) * half * -Complex64::I]);
-                mapped[k] = x + y * Complex64::I;
-            }
+        let [x, y] = [x, y].map(|waves| self.transforms.backward(waves, self.cells));
+        x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
+    }
+
+    /// Returns the convolution of a field of numbers with a table.
+    pub fn of_one(&self, values: &[f64], table: &Spectrum) -> Vec<f64> {
+        let mut waves = self.transforms.forward(values, self.cells);
+        let norm = self.norm();
+        for (wave, factor) in waves.iter_mut().zip(table) {
+            *wave *= norm * factor;
         }
-        self.transforms.backward(&mut mapped);
-        let rows = mapped.chunks(columns).take(self.cells[1]);
-        rows.flat_map(|row| row[..self.cells[0]].iter().map(|z| [z.re, z.im]))
-            .collect()
+        self.transforms.backward(waves, self.cells)
+    }
+
+    /// What a transform and its inverse have to be multiplied by.
+    fn norm(&self) -> f64 {
+        1.0 / self.transforms.table().iter().product::<usize>() as f64
     }
 }

@@ -88,7 +88,7 @@ impl Creep {
             .collect();
         let pressure = normal(&surfaces, &distance, self.load, None)?.pressure;
         let traction: Vec<_> = pressure.iter().map(|p| [*p, 0.0]).collect();
-        let moved = surfaces.displacement(&traction, 0);
+        let moved = surfaces.displacement(&traction, false);
         // Under the pressures of Hertz u_x is c - c_x x^2 - c_y y^2.
         let row = grid.cells[1] / 2 * grid.cells[0] + grid.cells[0] / 2;
         let cells = [row, row + CELLS.0 / 2];

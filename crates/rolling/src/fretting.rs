@@ -374,7 +374,7 @@ impl Fretting<'_> {
     pub fn compliance(&self) -> [f64; 2] {
         let load = self.load();
         let field = self.pressure.iter().map(|p| self.along.map(|a| a * p));
-        let moved = self.surfaces.displacement(&field.collect::<Field>(), 0);
+        let moved = self.surfaces.displacement(&field.collect::<Field>(), false);
         let area = self.surfaces.grid.area(3);
         let (mut sum, mut most) = (0.0, 0.0f64);
         for (u, p) in moved.iter().zip(self.pressure).filter(|(_, p)| **p > 0.0) {

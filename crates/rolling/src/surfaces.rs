@@ -7,6 +7,7 @@ use crate::motion::Motion;
 use fretwork_elastic::Elasticity;
 use fretwork_elastic::half_space::influence::{Influence, rectangle};
 use fretwork_elastic::half_space::{CellGrid, Complex64};
+use std::sync::OnceLock;
 
 /// What passes from one step of a motion to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,22 @@ pub struct Surfaces {
     convolution: Convolution,
     /// Normal displacement by pressure (m/Pa).
     normal: Spectrum,
+    tables: Tables,
+}
+
+/// Tables that are made at their first use.
+#[derive(Debug, Default)]
+struct Tables {
+    /// Entries xx, yy and xy of the displacement by traction, here and one cell upstream (m/Pa).
+    displacement: [OnceLock<[Spectrum; 3]>; 2],
+    /// The same entries of the slip in a step of steady rolling (m/Pa).
+    steady: OnceLock<[Spectrum; 3]>,
+    /// Slip in rolling by pressure, along x and y (m/Pa).
+    slip_by_pressure: OnceLock<[Spectrum; 2]>,
+    /// Normal displacement by traction along x and y (m/Pa).
+    normal_by_traction: OnceLock<[Spectrum; 2]>,
+    /// Inverse of the displacement by waves of traction (Pa/m).
+    stiffness: OnceLock<[Vec<f64>; 3]>,
 }
 
 impl Surfaces {
@@ -42,16 +59,13 @@ impl Surfaces {
             bodies,
             convolution,
             normal,
+            tables: Tables::default(),
         }
     }
 
     /// Returns the sum of the normal displacements of both surfaces by pressures (m).
     pub fn normal(&self, pressure: &[f64]) -> Vec<f64> {
-        let field: Field = pressure.iter().map(|p| [*p, 0.0]).collect();
-        let moved = self
-            .convolution
-            .apply(&field, |k, [p, _]| [self.normal[k] * p, Complex64::ZERO]);
-        moved.into_iter().map(|u| u[0]).collect()
+        self.convolution.of_one(pressure, &self.normal)
     }
 
     /// Returns whether pressures move the surfaces along each other, and tractions apart.
@@ -66,11 +80,14 @@ impl Surfaces {
         if matches!(motion, Motion::Shift { .. }) {
             return vec![[0.0; 2]; pressure.len()];
         }
-        let [x, y] = self.convolution.spectra(|at| {
-            let [here, there] =
-                [0.0, 1.0].map(|ahead| of_cell(&self.grid, &self.bodies, [at[0] + ahead, at[1]]));
-            [0, 1].map(|k| here[k][2] - there[k][2])
-        });
+        let made = || {
+            self.convolution.spectra(|at| {
+                let ahead = |n| of_cell(&self.grid, &self.bodies, [at[0] + n, at[1]]);
+                let [here, there] = [0.0, 1.0].map(ahead);
+                [0, 1].map(|k| here[k][2] - there[k][2])
+            })
+        };
+        let [x, y] = self.tables.slip_by_pressure.get_or_init(made);
         let field: Field = pressure.iter().map(|p| [*p, 0.0]).collect();
         self.convolution
             .apply(&field, |k, [p, _]| [x[k] * p, y[k] * p])
@@ -78,10 +95,13 @@ impl Surfaces {
 
     /// Returns the normal displacements by tractions (m), which open the gap.
     pub fn normal_by_traction(&self, traction: &[Vector]) -> Vec<f64> {
-        let [x, y] = self.convolution.spectra(|at| {
-            let here = of_cell(&self.grid, &self.bodies, at);
-            [here[2][0], here[2][1]]
-        });
+        let made = || {
+            self.convolution.spectra(|at| {
+                let here = of_cell(&self.grid, &self.bodies, at);
+                [here[2][0], here[2][1]]
+            })
+        };
+        let [x, y] = self.tables.normal_by_traction.get_or_init(made);
         let moved = self
             .convolution
             .apply(traction, |k, [p, q]| [x[k] * p + y[k] * q, Complex64::ZERO]);
@@ -89,23 +109,43 @@ impl Surfaces {
     }
 
     /// Returns the tangential displacements by tractions (m), including that of the layer, at
-    /// places that lie `ahead` cells upstream of each cell.
-    pub fn displacement(&self, traction: &[Vector], ahead: usize) -> Field {
-        let [xx, yy, xy] = self.convolution.spectra(|at| {
-            let there = [at[0] + ahead as f64, at[1]];
-            let u = of_cell(&self.grid, &self.bodies, there);
-            let own = if there == [0.0; 2] { self.layer } else { 0.0 };
-            [u[0][0] + own, u[1][1] + own, u[0][1]]
-        });
+    /// places that lie no cell or one cell upstream of each cell.
+    pub fn displacement(&self, traction: &[Vector], upstream: bool) -> Field {
+        let [xx, yy, xy] = self.displacement_table(upstream);
         self.convolution.apply(traction, |k, [x, y]| {
             [xx[k] * x + xy[k] * y, xy[k] * x + yy[k] * y]
         })
     }
 
+    fn displacement_table(&self, upstream: bool) -> &[Spectrum; 3] {
+        let ahead = usize::from(upstream);
+        self.tables.displacement[ahead].get_or_init(|| {
+            self.convolution
+                .spectra(|at| self.moved([at[0] + ahead as f64, at[1]]))
+        })
+    }
+
+    fn steady_table(&self) -> &[Spectrum; 3] {
+        self.tables.steady.get_or_init(|| {
+            self.convolution.spectra(|at| {
+                let (here, there) = (self.moved(at), self.moved([at[0] + 1.0, at[1]]));
+                std::array::from_fn(|k| here[k] - there[k])
+            })
+        })
+    }
+
+    /// Returns the entries xx, yy and xy of the displacement at a distance in cells by unit
+    /// tractions on a cell (m/Pa), including that of the layer on the cell itself.
+    fn moved(&self, at: [f64; 2]) -> [f64; 3] {
+        let u = of_cell(&self.grid, &self.bodies, at);
+        let own = if at == [0.0; 2] { self.layer } else { 0.0 };
+        [u[0][0] + own, u[1][1] + own, u[0][1]]
+    }
+
     /// Returns the displacement of a cell along the rolling by a traction on it (m/Pa), including
     /// that of the layer.
     pub fn own_compliance(&self) -> f64 {
-        of_cell(&self.grid, &self.bodies, [0.0; 2])[0][0] + self.layer
+        self.moved([0.0; 2])[0]
     }
 
     /// Returns the map from tractions to slip.
@@ -133,60 +173,41 @@ fn of_cell(grid: &CellGrid, bodies: &[Elasticity; 2], at: [f64; 2]) -> Influence
     out
 }
 
-fn upstream(at: [f64; 2], passage: Passage) -> Option<[f64; 2]> {
-    match passage {
-        Passage::Steady => Some([at[0] + 1.0, at[1]]),
-        Passage::Shift => None,
-    }
-}
-
 /// The linear map from tractions to slip in a step, S = B p (m by Pa), and an approximate inverse.
 #[derive(Debug)]
 pub struct Slip<'a> {
     surfaces: &'a Surfaces,
     passage: Passage,
     /// Entries xx, yy and xy of B by wave number.
-    map: [Spectrum; 3],
+    map: &'a [Spectrum; 3],
     /// Inverse of the displacement by waves of traction (Pa/m).
-    inverse: [Vec<f64>; 3],
+    inverse: &'a [Vec<f64>; 3],
     /// Slip of a cell by its own traction along x (m/Pa).
     pub own: f64,
 }
 
 impl<'a> Slip<'a> {
     fn new(surfaces: &'a Surfaces, passage: Passage) -> Self {
-        let (grid, layer) = (&surfaces.grid, surfaces.layer);
-        let entries = |u: Influence| [u[0][0], u[1][1], u[0][1]];
-        let slip = |at: [f64; 2]| {
-            let moved = |at| entries(of_cell(grid, &surfaces.bodies, at));
-            let mut sum = moved(at);
-            if let Some(upstream) = upstream(at, passage) {
-                let there = moved(upstream);
-                (0..3).for_each(|k| sum[k] -= there[k]);
-            }
-            // The layer: flex (p_I - p_I+), with the second part in steady rolling alone.
-            let sign = match at {
-                [0.0, 0.0] => 1.0,
-                [-1.0, 0.0] if passage == Passage::Steady => -1.0,
-                _ => 0.0,
-            };
-            sum[0] += sign * layer;
-            sum[1] += sign * layer;
-            sum
-        };
-        let own = slip([0.0; 2])[0];
+        let own = surfaces.own_compliance();
+        let stiffness = &surfaces.tables.stiffness;
         Self {
             surfaces,
             passage,
-            map: surfaces.convolution.spectra(slip),
-            inverse: stiffness_of_waves(surfaces),
-            own,
+            map: match passage {
+                Passage::Steady => surfaces.steady_table(),
+                Passage::Shift => surfaces.displacement_table(false),
+            },
+            inverse: stiffness.get_or_init(|| stiffness_of_waves(surfaces)),
+            own: match passage {
+                Passage::Steady => own - surfaces.moved([1.0, 0.0])[0],
+                Passage::Shift => own,
+            },
         }
     }
 
     /// Returns the slip by tractions (m), without the rigid one.
     pub fn by(&self, traction: &[Vector]) -> Field {
-        let [xx, yy, xy] = &self.map;
+        let [xx, yy, xy] = self.map;
         self.surfaces.convolution.apply(traction, |k, [x, y]| {
             [xx[k] * x + xy[k] * y, xy[k] * x + yy[k] * y]
         })
@@ -213,7 +234,7 @@ impl<'a> Slip<'a> {
                 }
             }
         }
-        let [xx, yy, xy] = &self.inverse;
+        let [xx, yy, xy] = self.inverse;
         let mut out = self.surfaces.convolution.apply(&moved, |k, [x, y]| {
             [x * xx[k] + y * xy[k], x * xy[k] + y * yy[k]]
         });

@@ -202,11 +202,12 @@ pub fn tangential(
         Motion::Steady(creepage) => rigid_slip(&surfaces.grid, creepage),
         Motion::Transient { creepage, from } => less(
             rigid_slip(&surfaces.grid, creepage),
-            &surfaces.displacement(from, 1),
+            &surfaces.displacement(from, true),
         ),
-        Motion::Shift { by, from } => {
-            less(vec![*by; pressure.len()], &surfaces.displacement(from, 0))
-        }
+        Motion::Shift { by, from } => less(
+            vec![*by; pressure.len()],
+            &surfaces.displacement(from, false),
+        ),
     };
     if surfaces.couple() {
         let moved = surfaces.slip_by_pressure(pressure, motion);

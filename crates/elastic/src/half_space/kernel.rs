@@ -3,7 +3,7 @@
 
 use super::grid::CellGrid;
 use super::influence::{Influence, rectangle, strip, uniform, wave};
-use super::transforms::{Transforms, smooth};
+use super::transforms::{Transforms, without_repeats};
 use crate::material::Elasticity;
 use rustfft::num_complex::Complex64;
 use std::sync::OnceLock;
@@ -43,8 +43,8 @@ impl Kernel {
     ) -> Self {
         let periodic = matches!(reach, Reach::Periodic(_));
         let table = grid.cells.map(|n| match n {
-            n if periodic || n == 1 => n,
-            n => smooth(2 * n - 1),
+            n if periodic => n,
+            n => without_repeats(n),
         });
         let transforms = Transforms::new(table);
         let influence = match reach {
@@ -110,52 +110,31 @@ impl Kernel {
 
     fn convolve(&self, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let d = self.dimension;
-        let [columns, rows] = self.cells;
-        let size = self.table[0] * self.table[1];
+        let norm = 1.0 / (self.table[0] * self.table[1]) as f64;
+        let forces = forces.iter();
         let transformed: Vec<Vec<Complex64>> = forces
-            .iter()
-            .map(|force| {
-                let mut values = vec![Complex64::ZERO; size];
-                for j in 0..rows {
-                    for i in 0..columns {
-                        values[j * self.table[0] + i].re = force[j * columns + i];
-                    }
-                }
-                self.transforms.forward(&mut values);
-                values
-            })
+            .map(|force| self.transforms.forward(force, self.cells))
             .collect();
         let spectrum = self.spectrum.get_or_init(|| self.transformed());
         (0..d)
             .map(|a| {
-                let mut values: Vec<Complex64> = spectrum
-                    .iter()
-                    .enumerate()
-                    .map(|(k, s)| {
-                        transformed
-                            .iter()
-                            .zip(s[a])
-                            .fold(Complex64::ZERO, |sum, (force, s)| sum + s * force[k])
-                    })
-                    .collect();
-                self.transforms.backward(&mut values);
-                let cells = (0..columns * rows).map(|c| (c % columns, c / columns));
-                cells
-                    .map(|(i, j)| values[j * self.table[0] + i].re / size as f64)
-                    .collect()
+                let waves = spectrum.iter().enumerate().map(|(k, s)| {
+                    let terms = transformed.iter().zip(s[a]);
+                    norm * terms.fold(Complex64::ZERO, |sum, (force, s)| sum + s * force[k])
+                });
+                self.transforms.backward(waves.collect(), self.cells)
             })
             .collect()
     }
 
     /// The table in wave numbers.
     fn transformed(&self) -> Vec<[[Complex64; 3]; 3]> {
-        let mut out = vec![[[Complex64::ZERO; 3]; 3]; self.influence.len()];
+        let mut out = vec![[[Complex64::ZERO; 3]; 3]; self.transforms.waves().count()];
         for a in 0..self.dimension {
             for b in 0..self.dimension {
-                let entries = self.influence.iter().map(|i| Complex64::from(i[a][b]));
-                let mut values: Vec<Complex64> = entries.collect();
-                self.transforms.forward(&mut values);
-                for (out, value) in out.iter_mut().zip(values) {
+                let entries: Vec<f64> = self.influence.iter().map(|i| i[a][b]).collect();
+                let waves = self.transforms.forward(&entries, self.table);
+                for (out, value) in out.iter_mut().zip(waves) {
                     out[a][b] = value;
                 }
             }
@@ -165,7 +144,8 @@ impl Kernel {
 
     /// Returns the memory of the tables, by distance and by wave number (bytes).
     pub fn bytes(&self) -> usize {
-        self.influence.len() * (size_of::<Influence>() + size_of::<[[Complex64; 3]; 3]>())
+        self.influence.len() * size_of::<Influence>()
+            + self.transforms.waves().count() * size_of::<[[Complex64; 3]; 3]>()
     }
 
     /// Returns the number of floating-point operations of a convolution: a transform of n numbers
@@ -228,10 +208,10 @@ fn waves(
         |k: usize, of: usize| 2.0 * std::f64::consts::PI * signed(k, grid.cells[of]) / extent[of];
     // The sign of the shortest wave is undetermined: its odd terms are left out.
     let shortest = |k: usize, of: usize| 2 * k == grid.cells[of];
-    let spectrum: Vec<[Influence; 2]> = (0..columns * rows)
-        .map(|c| {
-            let (i, j) = (c % columns, c / columns);
-            if c == 0 {
+    let spectrum: Vec<[Influence; 2]> = transforms
+        .waves()
+        .map(|[i, j]| {
+            if [i, j] == [0, 0] {
                 return [uniform(material, depth, dimension), Influence::default()];
             }
             let k = [number(i, 0), if rows > 1 { number(j, 1) } else { 0.0 }];
@@ -259,13 +239,11 @@ fn waves(
     let mut out = vec![Influence::default(); columns * rows];
     for a in 0..dimension {
         for b in 0..dimension {
-            let entries = spectrum
-                .iter()
-                .map(|s| Complex64::new(s[0][a][b], s[1][a][b]));
-            let mut values: Vec<Complex64> = entries.collect();
-            transforms.backward(&mut values);
+            let waves = spectrum.iter();
+            let waves = waves.map(|s| scale * Complex64::new(s[0][a][b], s[1][a][b]));
+            let values = transforms.backward(waves.collect(), grid.cells);
             for (out, value) in out.iter_mut().zip(values) {
-                out[a][b] = value.re * scale;
+                out[a][b] = value;
             }
         }
     }

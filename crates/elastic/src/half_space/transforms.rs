@@ -1,11 +1,13 @@
-//! Discrete Fourier transforms over a table with two axes.
+//! Discrete Fourier transforms of real values over a table with two axes.
 
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 pub use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
-/// Returns the next number without prime factors above 5, for which transforms are fast.
-pub fn smooth(from: usize) -> usize {
+/// Returns the length of a table in which a convolution over this number of cells does not repeat:
+/// at least twice as long, even, and without prime factors above 5, for which transforms are fast.
+pub fn without_repeats(cells: usize) -> usize {
     let simple = |mut n: usize| {
         for p in [2, 3, 5] {
             while n.is_multiple_of(p) {
@@ -14,15 +16,21 @@ pub fn smooth(from: usize) -> usize {
         }
         n == 1
     };
-    (from..).find(|n| simple(*n)).unwrap_or(from)
+    match cells {
+        1 => 1,
+        _ => 2 * (cells..).find(|n| simple(*n)).unwrap_or(cells),
+    }
 }
 
 /// Fourier transforms over a table, not normalised: forward and backward multiply by the number of
 /// its entries.
+///
+/// Values are real, hence the waves along the rows have half the numbers: those of a wave vector
+/// (i, j), with i up to half the number of columns, are at `i * rows + j`.
 pub struct Transforms {
     table: [usize; 2],
-    forward: [Arc<dyn Fft<f64>>; 2],
-    backward: [Arc<dyn Fft<f64>>; 2],
+    rows: (Arc<dyn RealToComplex<f64>>, Arc<dyn ComplexToReal<f64>>),
+    columns: [Arc<dyn Fft<f64>>; 2],
 }
 
 impl std::fmt::Debug for Transforms {
@@ -36,11 +44,19 @@ impl std::fmt::Debug for Transforms {
 impl Transforms {
     /// Plans the transforms of a table: number of columns and of rows; entries are row by row.
     pub fn new(table: [usize; 2]) -> Self {
+        let [columns, rows] = table;
+        let mut real = RealFftPlanner::new();
         let mut planner = FftPlanner::new();
         Self {
             table,
-            forward: table.map(|n| planner.plan_fft_forward(n)),
-            backward: table.map(|n| planner.plan_fft_inverse(n)),
+            rows: (
+                real.plan_fft_forward(columns),
+                real.plan_fft_inverse(columns),
+            ),
+            columns: [
+                planner.plan_fft_forward(rows),
+                planner.plan_fft_inverse(rows),
+            ],
         }
     }
 
@@ -49,39 +65,149 @@ impl Transforms {
         self.table
     }
 
-    /// Transforms values to wave numbers, in place.
-    pub fn forward(&self, values: &mut [Complex64]) {
-        self.both(&self.forward, values);
+    /// Returns the largest number of a wave along the rows.
+    fn shortest(&self) -> usize {
+        self.table[0] / 2
     }
 
-    /// Transforms wave numbers to values, in place.
-    pub fn backward(&self, values: &mut [Complex64]) {
-        self.both(&self.backward, values);
+    /// Iterates over the numbers of all waves along x and y, in order; those of y above half the
+    /// number of rows represent negative ones.
+    pub fn waves(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
+        let rows = self.table[1];
+        let all = (self.shortest() + 1) * rows;
+        (0..all).map(move |k| [k / rows, k % rows])
     }
 
-    /// Transforms along the rows, then along the columns.
-    fn both(&self, transforms: &[Arc<dyn Fft<f64>>; 2], values: &mut [Complex64]) {
+    /// Transforms values to waves. The values fill the first `cells`, columns and rows, of the
+    /// table; the others are zero.
+    pub fn forward(&self, values: &[f64], cells: [usize; 2]) -> Vec<Complex64> {
         let [columns, rows] = self.table;
-        transforms[0].process(values);
-        if rows == 1 {
-            return;
+        let mut waves = vec![Complex64::ZERO; (self.shortest() + 1) * rows];
+        let transform = &self.rows.0;
+        let mut row = vec![0.0; columns];
+        let mut scratch = transform.make_scratch_vec();
+        let mut of_rows = Block::new(self.shortest() + 1);
+        for (first, values) in values.chunks(BLOCK * cells[0]).enumerate() {
+            for (values, out) in values.chunks(cells[0]).zip(of_rows.rows()) {
+                row[..cells[0]].copy_from_slice(values);
+                row[cells[0]..].fill(0.0);
+                let done = transform.process_with_scratch(&mut row, out, &mut scratch);
+                debug_assert!(done.is_ok(), "the lengths are those of the plan");
+            }
+            let count = values.len() / cells[0];
+            of_rows.write_columns(&mut waves, rows, first * BLOCK, count);
         }
-        let mut turned = vec![Complex64::ZERO; values.len()];
-        transpose(values, &mut turned, [columns, rows]);
-        transforms[1].process(&mut turned);
-        transpose(&turned, values, [rows, columns]);
+        if rows > 1 {
+            self.columns[0].process(&mut waves);
+        }
+        waves
+    }
+
+    /// Transforms waves to values, and returns those of the first `cells`, columns and rows, of the
+    /// table.
+    pub fn backward(&self, mut waves: Vec<Complex64>, cells: [usize; 2]) -> Vec<f64> {
+        let [columns, rows] = self.table;
+        if rows > 1 {
+            self.columns[1].process(&mut waves);
+        }
+        // Values are real: of the mean, and of the shortest wave, only the real part counts.
+        let mut real = |i: usize| {
+            waves[i * rows..(i + 1) * rows]
+                .iter_mut()
+                .for_each(|w| w.im = 0.0)
+        };
+        real(0);
+        if columns.is_multiple_of(2) {
+            real(self.shortest());
+        }
+        let transform = &self.rows.1;
+        let mut row = vec![0.0; columns];
+        let mut scratch = transform.make_scratch_vec();
+        let mut of_rows = Block::new(self.shortest() + 1);
+        let mut values = Vec::with_capacity(cells[0] * cells[1]);
+        for first in (0..cells[1]).step_by(BLOCK) {
+            let count = BLOCK.min(cells[1] - first);
+            of_rows.read_columns(&waves, rows, first, count);
+            for one in of_rows.rows().take(count) {
+                let done = transform.process_with_scratch(one, &mut row, &mut scratch);
+                debug_assert!(done.is_ok(), "the lengths are those of the plan");
+                values.extend_from_slice(&row[..cells[0]]);
+            }
+        }
+        values
     }
 }
 
-/// Writes columns as rows, block by block, which stays within a processor's cache.
-fn transpose(from: &[Complex64], to: &mut [Complex64], [columns, rows]: [usize; 2]) {
-    const BLOCK: usize = 16;
-    for j0 in (0..rows).step_by(BLOCK) {
-        for i0 in (0..columns).step_by(BLOCK) {
-            for j in j0..(j0 + BLOCK).min(rows) {
-                for i in i0..(i0 + BLOCK).min(columns) {
-                    to[i * rows + j] = from[j * columns + i];
-                }
+/// Number of rows that are turned into columns together, so that both stay within a processor's
+/// cache.
+const BLOCK: usize = 16;
+
+/// Some successive rows of waves.
+struct Block {
+    length: usize,
+    waves: Vec<Complex64>,
+}
+
+impl Block {
+    fn new(length: usize) -> Self {
+        let waves = vec![Complex64::ZERO; BLOCK * length];
+        Self { length, waves }
+    }
+
+    fn rows(&mut self) -> impl Iterator<Item = &mut [Complex64]> {
+        self.waves.chunks_mut(self.length)
+    }
+
+    /// Writes `count` rows into columns of length `rows`, from the row `first`.
+    fn write_columns(&self, to: &mut [Complex64], rows: usize, first: usize, count: usize) {
+        for (i, column) in to.chunks_mut(rows).enumerate() {
+            let places = column[first..first + count].iter_mut().enumerate();
+            places.for_each(|(j, to)| *to = self.waves[j * self.length + i]);
+        }
+    }
+
+    /// Reads `count` rows from columns of length `rows`, from the row `first`.
+    fn read_columns(&mut self, from: &[Complex64], rows: usize, first: usize, count: usize) {
+        for (i, column) in from.chunks(rows).enumerate() {
+            let places = column[first..first + count].iter().enumerate();
+            places.for_each(|(j, from)| self.waves[j * self.length + i] = *from);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Waves are the sums of their definition, and the way back returns the values.
+    #[test]
+    fn waves_are_the_sums_of_their_definition() {
+        for (table, cells) in [
+            ([8, 6], [8, 6]),
+            ([10, 20], [5, 17]),
+            ([7, 5], [7, 5]),
+            ([12, 1], [6, 1]),
+            ([1, 1], [1, 1]),
+        ] {
+            let transforms = Transforms::new(table);
+            let value = |i: usize, j: usize| (1.3 * i as f64 + 0.7 * (j * j) as f64).sin();
+            let places = (0..cells[0] * cells[1]).map(|c| (c % cells[0], c / cells[0]));
+            let values: Vec<f64> = places.clone().map(|(i, j)| value(i, j)).collect();
+            let waves = transforms.forward(&values, cells);
+            for ([kx, ky], wave) in transforms.waves().zip(&waves) {
+                let phase = |i: usize, j: usize| {
+                    let x = (kx * i) as f64 / table[0] as f64;
+                    -TAU * (x + (ky * j) as f64 / table[1] as f64)
+                };
+                let term = |(i, j)| Complex64::from_polar(value(i, j), phase(i, j));
+                let sum: Complex64 = places.clone().map(term).sum();
+                assert!((sum - wave).norm() < 1e-12, "{table:?} {kx} {ky}");
+            }
+            let back = transforms.backward(waves, cells);
+            let size = (table[0] * table[1]) as f64;
+            for (back, value) in back.iter().zip(&values) {
+                assert!((back / size - value).abs() < 1e-14, "{table:?}");
             }
         }
     }
