@@ -65,7 +65,7 @@ GALLERY = {
         "cohesive_shear": ("What does attraction between grains do to it?", ""),
         "shear_cell_3d": ("How do spheres move in a shear cell?", ""),
         "silo": ("How fast does a silo empty, and who carries the weight?", ""),
-        "silo_3d": ("And in three dimensions?", ""),
+        "silo_3d": ("And in three dimensions?", "frames/frame_00000750.png"),
         "rotating_drum_2d": ("What slope has the surface in a rotating drum?", ""),
         "rotating_drum_3d": ("How do the end walls of a drum change it?", ""),
         "collapse": ("How far does a column spread?", ""),
