@@ -16,6 +16,7 @@ mod bricks;
 mod compliant;
 mod elastic;
 mod extremes;
+mod fast_springs;
 mod flush;
 mod friction;
 mod held;

@@ -3,9 +3,10 @@
 //!
 //! `cargo bench -p fretwork-rolling` prints for each grid the cells in contact, iterations and
 //! wall-clock time on one thread, without that of set-up. Where Tamaas is installed (`pip install
-//! tamaas`), it solves the same problem in turn: the ratio of the medians over `ROUNDS` rounds, 3 by
-//! default, and the difference of the pressures, sum |p - p_T| over sum p. `TAMAAS_PYTHON` names
-//! the Python that has it, `python3` by default; a number the only grid, in cells along a side.
+//! tamaas`), it solves the same problem in turn: its time over ours by the medians of `ROUNDS`
+//! rounds, 3 by default, and the difference of the pressures, sum |p - p_T| over sum p.
+//! `TAMAAS_PYTHON` names the Python that has it, `python3` by default; a number the only grid, in
+//! cells along a side.
 //!
 //! Then for grids up to 256 the time of a friction loop of partial slip, 50 steps with Coulomb's
 //! friction under these pressures: the first loading in 10 steps and the cycle in 40.
@@ -149,7 +150,7 @@ fn one(cells: usize, rounds: usize, peer: Option<&Peer>) {
         true => println!(),
         false => {
             let other = median(others);
-            println!(" {other:>9.3} {:>9.2} {difference:>10.1e}", own / other);
+            println!(" {other:>9.3} {:>9.2} {difference:>10.1e}", other / own);
         }
     }
 }

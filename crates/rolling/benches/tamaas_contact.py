@@ -16,7 +16,8 @@ import tamaas as tm
 
 def main():
     heights, cells, extent, modulus, load, tolerance, pressures = sys.argv[1:]
-    cells, extent, modulus, load, tolerance = int(cells), float(extent), float(modulus), float(load), float(tolerance)
+    cells = int(cells)
+    extent, modulus, load, tolerance = map(float, (extent, modulus, load, tolerance))
     tm.initialize(1)
     tm.set_log_level(tm.LogLevel.error)
     surface = -np.fromfile(heights).reshape(cells, cells)

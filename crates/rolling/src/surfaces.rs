@@ -18,7 +18,8 @@ pub enum Passage {
     Shift,
 }
 
-/// The surfaces of two bodies.
+/// The surfaces of two bodies. Tables are made once from the grid and the layer, which stay as they
+/// are.
 #[derive(Debug)]
 pub struct Surfaces {
     /// The cells.
@@ -288,4 +289,78 @@ fn stiffness_of_waves(surfaces: &Surfaces) -> [Vec<f64>; 3] {
             odd,
         ]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Displacements and slips of unlike bodies with a layer between them are sums over the cells,
+    /// whichever was asked for before.
+    #[test]
+    fn displacements_are_sums_over_cells() {
+        let body = |young, poisson| Elasticity {
+            young,
+            poisson,
+            density: 7800.0,
+        };
+        let grid = CellGrid {
+            from: [0.0; 2],
+            size: [1e-4, 2e-4],
+            cells: [7, 4],
+        };
+        let bodies = [body(210e9, 0.3), body(70e9, 0.2)];
+        let layer = 1e-15;
+        let surfaces = Surfaces::new(grid, bodies, layer);
+        let value = |c: usize| [(3.0 * c as f64).sin(), (5.0 * c as f64).cos()];
+        let traction: Field = (0..grid.len()).map(value).collect();
+        let pressure: Vec<f64> = traction.iter().map(|v| 1.0 + v[0]).collect();
+        // Of a component of the displacement at a cell, or one cell upstream of it.
+        let sum = |at: usize, a: usize, ahead: usize, by: &dyn Fn(usize) -> [f64; 3]| -> f64 {
+            let loads = (0..grid.len()).map(|load| {
+                let [[i, j], [k, l]] = [at, load].map(|c| grid.place(c));
+                let place = [(i + ahead) as f64 - k as f64, j as f64 - l as f64];
+                let mut u = of_cell(&grid, &bodies, place);
+                if place == [0.0; 2] {
+                    (0..2).for_each(|b| u[b][b] += layer);
+                }
+                (0..3).map(|b| u[a][b] * by(load)[b]).sum::<f64>()
+            });
+            loads.sum()
+        };
+        let by_traction = |c: usize| [traction[c][0], traction[c][1], 0.0];
+        let by_pressure = |c: usize| [0.0, 0.0, pressure[c]];
+        let creepage = Motion::Steady(crate::motion::Creepage::default());
+        for _ in 0..2 {
+            let moved = [false, true].map(|upstream| surfaces.displacement(&traction, upstream));
+            let shift = surfaces.slip(Passage::Shift).by(&traction);
+            let steady = surfaces.slip(Passage::Steady).by(&traction);
+            let opened = surfaces.normal_by_traction(&traction);
+            let pressed = surfaces.normal(&pressure);
+            let slipped = surfaces.slip_by_pressure(&pressure, &creepage);
+            for at in 0..grid.len() {
+                let near = |found: f64, wanted: f64| {
+                    let largest = surfaces.own_compliance() * 10.0;
+                    assert!(
+                        (found - wanted).abs() < 1e-12 * largest,
+                        "{at}: {found:e} {wanted:e}"
+                    );
+                };
+                for a in 0..2 {
+                    let [here, there] = [0, 1].map(|ahead| sum(at, a, ahead, &by_traction));
+                    near(moved[0][at][a], here);
+                    near(moved[1][at][a], there);
+                    near(shift[at][a], here);
+                    near(steady[at][a], here - there);
+                    let [here, there] = [0, 1].map(|ahead| sum(at, a, ahead, &by_pressure));
+                    near(slipped[at][a], here - there);
+                }
+                near(opened[at], sum(at, 2, 0, &by_traction));
+                near(pressed[at], sum(at, 2, 0, &by_pressure));
+            }
+        }
+        let own = surfaces.slip(Passage::Steady).own;
+        let next = surfaces.moved([1.0, 0.0])[0];
+        assert!((own - (surfaces.own_compliance() - next)).abs() < 1e-12 * own);
+    }
 }

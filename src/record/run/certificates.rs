@@ -1,10 +1,10 @@
 //! Certificates of laws that earlier runs found, in a file of the user, so that runs of the same
 //! laws with the same parameters do not certify them again.
 
-use crate::laws::{LoadedLaw, program_sha256};
+use crate::laws::{LoadedLaw, program_sha256, reason_to_distrust};
 use crate::record::encoding::hex;
 use sha2::{Digest, Sha256};
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::PathBuf;
@@ -12,71 +12,78 @@ use std::path::PathBuf;
 /// Size of the file (bytes) from which it is begun anew.
 const LARGEST: u64 = 1 << 20;
 
-/// The laws and parameters that have passed certification.
+/// What is known of laws with their parameters.
 ///
-/// A line of the file is the SHA-256 of the program, of the law and its libraries, of its
-/// parameters, and the same of the law that it was certified with. Laws that fail are tested at
-/// each run, since a loaded machine may be the reason.
+/// A line of the file is the SHA-256 of the program, of the law with the libraries that it links
+/// to, of its parameters, of the way in which it was tested, and the same of the law that it was
+/// tested with. Only laws that pass are kept: a loaded machine may be the reason why one fails.
 pub(super) struct Certificates {
-    /// The file; `None` where the system gives the program no place for one.
+    /// The file; `None` where the system gives the program no place for one, or others may write
+    /// to it.
     file: Option<PathBuf>,
-    passed: HashSet<String>,
+    /// Lines, and whether the law passes.
+    known: HashMap<String, bool>,
 }
 
 impl Certificates {
     /// Reads those that earlier runs kept. A file that cannot be read has none.
     pub fn kept(file: Option<PathBuf>) -> Self {
+        let file = file.filter(|f| reason_to_distrust(f).is_none());
         let size = |file: &PathBuf| fs::metadata(file).map(|m| m.len());
         if let Some(file) = file.as_ref().filter(|f| size(f).is_ok_and(|s| s > LARGEST)) {
             let _ = fs::remove_file(file);
         }
-        let text = file.as_ref().and_then(|f| fs::read_to_string(f).ok());
-        let passed = text
-            .unwrap_or_default()
-            .lines()
-            .map(str::to_owned)
-            .collect();
-        Self { file, passed }
+        let bytes = file.as_ref().and_then(|f| fs::read(f).ok());
+        let text = String::from_utf8_lossy(bytes.as_deref().unwrap_or_default());
+        let known = text.lines().map(|line| (line.to_owned(), true)).collect();
+        Self { file, known }
     }
 
-    /// Returns whether a law passes certification with a partner, from an earlier run or by `test`.
+    /// Returns whether a law passes certification with a partner, from this or an earlier run or by
+    /// `test`; `inside` says whether it is tested within this process.
     pub fn passes(
         &mut self,
         law: &LoadedLaw,
         partner: Option<&LoadedLaw>,
+        inside: bool,
         test: impl FnOnce() -> bool,
     ) -> bool {
-        let Some(line) = line(law, partner) else {
-            return test();
-        };
-        if self.passed.contains(&line) {
-            return true;
+        let line = line(law, partner, inside);
+        if let Some(passes) = self.known.get(&line) {
+            return *passes;
         }
         let passes = test();
-        if passes {
-            self.keep(line);
+        let laws = [Some(law), partner];
+        if passes && laws.into_iter().flatten().all(is_identified) {
+            self.keep(&line);
         }
+        self.known.insert(line, passes);
         passes
     }
 
     /// Without the file the next run certifies again, so that failing to write it is no error.
-    fn keep(&mut self, line: String) {
-        if let Some(file) = &self.file {
-            let folder = file.parent().map(fs::create_dir_all);
-            if matches!(folder, Some(Ok(()))) {
-                let file = OpenOptions::new().create(true).append(true).open(file);
-                // One call, so that lines of runs at the same time do not mix.
-                let _ = file.and_then(|mut f| f.write_all(format!("{line}\n").as_bytes()));
-            }
+    fn keep(&self, line: &str) {
+        let Some(file) = &self.file else { return };
+        let folder = file.parent().map(fs::create_dir_all);
+        if matches!(folder, Some(Ok(()))) {
+            let file = OpenOptions::new().create(true).append(true).open(file);
+            // One call, so that lines of runs at the same time do not mix.
+            let _ = file.and_then(|mut f| f.write_all(format!("{line}\n").as_bytes()));
         }
-        self.passed.insert(line);
     }
 }
 
+/// Returns whether the hashes of program and law cover all code of the law: libraries that a law
+/// links to are known on Linux only.
+fn is_identified(law: &LoadedLaw) -> bool {
+    program_sha256().is_ok() && (law.plugin.built_in || cfg!(target_os = "linux"))
+}
+
 /// The line of a law and its partner.
-fn line(law: &LoadedLaw, partner: Option<&LoadedLaw>) -> Option<String> {
+fn line(law: &LoadedLaw, partner: Option<&LoadedLaw>, inside: bool) -> String {
     let mut sum = Sha256::new();
-    sum.update(program_sha256().ok()?);
+    sum.update(program_sha256().unwrap_or_default());
+    sum.update([u8::from(inside)]);
     for law in [Some(law), partner].into_iter().flatten() {
         let plugin = &law.plugin;
         for text in [plugin.kind.word(), &plugin.name, &plugin.sha256] {
@@ -88,5 +95,5 @@ fn line(law: &LoadedLaw, partner: Option<&LoadedLaw>) -> Option<String> {
             sum.update(number.to_bits().to_le_bytes());
         }
     }
-    Some(hex(&sum.finalize()))
+    hex(&sum.finalize())
 }

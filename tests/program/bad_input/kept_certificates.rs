@@ -2,12 +2,41 @@
 //! of laws that pass.
 
 use super::trial::{PLANE, Trial, with};
+use std::fs::Permissions;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
 use std::process::Command;
+
+/// A law with a partner: damage is certified beside each cohesion law.
+#[test]
+fn of_laws_with_their_partners() {
+    let trial = Trial::new();
+    let case = with(
+        PLANE,
+        r#"contact: "coulomb""#,
+        r#"contact: "coulomb", cohesion: "elastic-bond", damage: "linear-softening""#,
+    );
+    let case = with(
+        &case,
+        r#"contact: {"mu": 0.3}"#,
+        r#"contact: {"mu": 0.3}, cohesion: {"k_n": 1e9, "k_t": 1e9}, damage: {}"#,
+    );
+    trial.write("case.ron", case);
+    assert_eq!(run(&trial, &[]), (true, 3));
+    // Cohesion of another stiffness, and damage beside it.
+    let other = "interfaces.grains.parameters.cohesion.k_n=2e9";
+    assert_eq!(run(&trial, &["--set", other]), (true, 5));
+    assert_eq!(run(&trial, &["--set", other]), (true, 5));
+}
 
 /// Runs the trial's case, and returns whether its laws are certified and how many certificates are
 /// kept then.
 fn run(trial: &Trial, more: &[&str]) -> (bool, usize) {
-    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+    run_by(Path::new(env!("CARGO_BIN_EXE_fretwork")), trial, more)
+}
+
+fn run_by(program: &Path, trial: &Trial, more: &[&str]) -> (bool, usize) {
+    let output = Command::new(program)
         .args("run case.ron --json --force --plugin-path .".split(' '))
         .args(more)
         .current_dir(trial.path(""))
@@ -34,10 +63,22 @@ fn of_shipped_laws_with_their_parameters() {
     assert_eq!(run(&trial, &["--set", other]), (true, 2));
     // What is no certificate is none, and a file that has grown large is begun anew.
     let file = trial.path("cache/fretwork/certificates.txt");
-    std::fs::write(&file, "\u{fffd} yes\n\n").unwrap();
+    std::fs::write(&file, b"\xff yes\n\n").unwrap();
     assert_eq!(run(&trial, &[]), (true, 3));
     std::fs::write(&file, "a line\n".repeat(200_000)).unwrap();
     assert_eq!(run(&trial, &[]), (true, 1));
+    // Another program certifies by itself.
+    let program = trial.path("program");
+    let mut bytes = std::fs::read(env!("CARGO_BIN_EXE_fretwork")).unwrap();
+    bytes.push(0);
+    std::fs::write(&program, bytes).unwrap();
+    std::fs::set_permissions(&program, Permissions::from_mode(0o755)).unwrap();
+    assert_eq!(run_by(&program, &trial, &[]), (true, 2));
+    assert_eq!(run(&trial, &[]), (true, 2));
+    // What others may write is not believed, and left alone.
+    std::fs::set_permissions(&file, Permissions::from_mode(0o666)).unwrap();
+    let other = "interfaces.grains.parameters.contact.mu=0.33";
+    assert_eq!(run(&trial, &["--set", other]), (true, 2));
     // Without a place for the file every run certifies.
     std::fs::remove_dir_all(trial.path("cache")).unwrap();
     trial.write("cache", "a file");

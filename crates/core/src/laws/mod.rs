@@ -58,3 +58,4 @@ pub use spring::{SpringForm, SpringStep};
 pub use step_info::StepInfo;
 pub use step_result::{ContactStep, MomentStep, SolvedStep, Totals, Velocities};
 pub use trial::LawStep;
+pub use trust::reason_to_distrust;

@@ -5,10 +5,10 @@
 use super::linked;
 use std::path::Path;
 
-/// Returns why a library should not be opened, if others can write to it, to a folder or link on
-/// its path, or to a library to which it links.
+/// Returns why a library, or another file that a run relies on, should not be opened, if others can
+/// write to it, to a folder or link on its path, or to a library to which it links.
 #[cfg(unix)]
-pub(super) fn reason_to_distrust(library: &Path) -> Option<String> {
+pub fn reason_to_distrust(library: &Path) -> Option<String> {
     of_all(library, &[on_the_way::effective_user()])
 }
 
@@ -52,7 +52,7 @@ pub(super) fn reason_to_distrust_beside_program(_: &Path) -> Option<String> {
 
 /// Permissions are not checked on systems without POSIX permissions.
 #[cfg(not(unix))]
-pub(super) fn reason_to_distrust(_: &Path) -> Option<String> {
+pub fn reason_to_distrust(_: &Path) -> Option<String> {
     None
 }
 

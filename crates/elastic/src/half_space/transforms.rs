@@ -92,7 +92,7 @@ impl Transforms {
                 row[..cells[0]].copy_from_slice(values);
                 row[cells[0]..].fill(0.0);
                 let done = transform.process_with_scratch(&mut row, out, &mut scratch);
-                debug_assert!(done.is_ok(), "the lengths are those of the plan");
+                assert!(done.is_ok(), "the lengths are those of the plan");
             }
             let count = values.len() / cells[0];
             of_rows.write_columns(&mut waves, rows, first * BLOCK, count);
@@ -130,7 +130,7 @@ impl Transforms {
             of_rows.read_columns(&waves, rows, first, count);
             for one in of_rows.rows().take(count) {
                 let done = transform.process_with_scratch(one, &mut row, &mut scratch);
-                debug_assert!(done.is_ok(), "the lengths are those of the plan");
+                assert!(done.is_ok(), "the lengths are those of the plan");
                 values.extend_from_slice(&row[..cells[0]]);
             }
         }
@@ -187,6 +187,9 @@ mod tests {
             ([8, 6], [8, 6]),
             ([10, 20], [5, 17]),
             ([7, 5], [7, 5]),
+            ([7, 6], [4, 6]),
+            ([6, 7], [6, 4]),
+            ([1, 5], [1, 3]),
             ([12, 1], [6, 1]),
             ([1, 1], [1, 1]),
         ] {
@@ -208,6 +211,33 @@ mod tests {
             let size = (table[0] * table[1]) as f64;
             for (back, value) in back.iter().zip(&values) {
                 assert!((back / size - value).abs() < 1e-14, "{table:?}");
+            }
+        }
+    }
+
+    /// Of waves that are those of no real field, the values are the real part of their sum.
+    #[test]
+    fn values_are_the_real_part_of_all_waves() {
+        for table in [[6, 5], [7, 6], [8, 4]] {
+            let transforms = Transforms::new(table);
+            let wave = |k: usize| Complex64::from_polar(1.0, 0.9 * (k * k) as f64);
+            let waves: Vec<Complex64> = (0..transforms.waves().count()).map(wave).collect();
+            let found = transforms.backward(waves.clone(), table);
+            for (cell, found) in found.iter().enumerate() {
+                let (x, y) = (cell % table[0], cell / table[0]);
+                let part = |(k, [kx, ky]): (usize, [usize; 2])| {
+                    let turn =
+                        (kx * x) as f64 / table[0] as f64 + (ky * y) as f64 / table[1] as f64;
+                    // A wave along x stands for its opposite too.
+                    let count = if kx == 0 || 2 * kx == table[0] {
+                        1.0
+                    } else {
+                        2.0
+                    };
+                    count * (waves[k] * Complex64::from_polar(1.0, TAU * turn)).re
+                };
+                let sum: f64 = transforms.waves().enumerate().map(part).sum();
+                assert!((sum - found).abs() < 1e-12, "{table:?} {cell}");
             }
         }
     }

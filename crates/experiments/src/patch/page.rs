@@ -157,11 +157,15 @@ pub(super) fn maps(outcome: &Outcome) -> Vec<Section> {
         let touching: Vec<usize> = touching.collect();
         // Cells of a line contact are as long as the line: drawn to scale they fill no page.
         if grid.cells[1] == 1 {
-            let row = touching.iter();
-            let row = row.map(|c| (1e3 * grid.middle(*c)[0], scale * values[*c]));
             let x = Axis::new("along the motion", "mm");
-            let chart = Chart::new(title, x, Axis::new(title, unit));
-            return figure(chart.with(Series::new("", row.collect())));
+            let mut chart = Chart::new(title, x, Axis::new(title, unit));
+            // A line for each of the patches that touch apart from each other.
+            for cells in touching.chunk_by(|one, next| one + 1 == *next) {
+                let points = cells.iter();
+                let points = points.map(|c| (1e3 * grid.middle(*c)[0], scale * values[*c]));
+                chart = chart.with(Series::new("", points.collect()));
+            }
+            return figure(chart);
         }
         let mut chart = Chart::new(
             title,

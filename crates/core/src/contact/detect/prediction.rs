@@ -17,6 +17,9 @@ use crate::threads;
 /// Factor on the required range of the neighbour list, so that the list stays valid while bodies
 /// accelerate.
 const HEADROOM: f64 = 1.5;
+/// Cosine of the angle by which the normal of a spring may turn within a step (8 degrees): beyond
+/// it the spring takes the normal of the place where its bodies meet.
+const SAME_NORMAL: f64 = 0.99;
 /// Pairs per task.
 const CHUNK: usize = 256;
 /// Approximate time to examine a pair (ns).
@@ -89,16 +92,18 @@ pub fn add_predicted<S: Space>(
 /// part of it. If there are any, the step must be solved again with them; see
 /// [`Network::merge_contacts`].
 ///
-/// A spring that was part of it overlaps by its law, however far its bodies move in the step:
-/// solving again would find the same. Such pairs are only reported, where they pass through.
+/// A spring that pushed in the solve overlaps by its law, however far its bodies move: `acts` tells
+/// whether the contact of an index did. Such a pair is not solved again while its normal stays, and
+/// only reported where it passes through. A spring that did not push was not known to close.
 pub fn find_missed<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,
     motion: &StepMotion<S>,
+    acts: impl Fn(usize) -> bool,
 ) -> Vec<Contact<S>> {
     let mut found = find_closing(network, scene, motion, SearchStage::After);
     let closing = found.len();
-    found.retain(|contact| !network.has_spring(contact));
+    found.retain(|contact| !network.is_held_by_spring(contact, &acts));
     if found.len() < closing && found.is_empty() {
         report_passing(network, scene, motion);
     }
@@ -359,10 +364,13 @@ fn find_closing<S: Space>(
 }
 
 impl<S: Space> Network<S> {
-    /// Returns whether a compliant contact with the key of this one is in the network.
-    fn has_spring(&self, contact: &Contact<S>) -> bool {
-        let at = || self.contacts.binary_search_by_key(&contact.key, |c| c.key);
-        self.memory[contact.law as usize].compliant && at().is_ok()
+    /// Returns whether a compliant contact with the key of this one acts, along the same normal.
+    fn is_held_by_spring(&self, contact: &Contact<S>, acts: impl Fn(usize) -> bool) -> bool {
+        let find = || self.contacts.binary_search_by_key(&contact.key, |c| c.key);
+        self.memory[contact.law as usize].compliant
+            && find().is_ok_and(|at| {
+                acts(at) && self.contacts[at].normal.dot(&contact.normal) > SAME_NORMAL
+            })
     }
 
     /// Merges contacts that close in the step into the network; contacts that already exist get the

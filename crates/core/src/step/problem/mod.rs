@@ -85,7 +85,9 @@ fn solve_with_all<S: Space>(
             detect::report_passing(network, &scene, &motion);
             return Ok(());
         }
-        let found = detect::find_missed(network, &scene, &motion);
+        let steps = &s.workspace.solved.contact_steps;
+        let acts = |k: usize| steps[k].solution.impulse != S::Vector::zero();
+        let found = detect::find_missed(network, &scene, &motion, acts);
         if found.is_empty() {
             return Ok(());
         }

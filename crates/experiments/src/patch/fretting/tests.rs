@@ -172,11 +172,13 @@ fn a_cylinder_is_a_strip() {
     );
     // Pressure, traction and slip are curves, with the pressure of the middle at the top.
     let sections = page::maps(&outcome);
+    let mut titles = Vec::new();
     for block in &sections[0].blocks {
         let Block::Figure(chart) = block else {
             panic!("{block:?}");
         };
         assert!(chart.field.is_none(), "{}", chart.title);
+        titles.push(chart.title.as_str());
         let points = &chart.series[0].points;
         let touching = points.iter().map(|p| p.0.abs()).fold(0.0, f64::max);
         near(touching, 1e3 * half, 0.05);
@@ -185,6 +187,8 @@ fn a_cylinder_is_a_strip() {
             near(most, 1e-6 * outcome.answer.pressure, 1e-12);
         }
     }
+    assert_eq!(titles.first(), Some(&"pressure"), "{titles:?}");
+    assert!(titles.len() > 1, "{titles:?}");
     let point = &outcome.answer.points[0];
     // sqrt(1 - Q/(mu P)) of the width sticks.
     let stuck = point.stroke.unwrap().stuck;

@@ -1,0 +1,78 @@
+//! Compliant contacts whose bodies move farther in a step than contact detection looks ahead.
+
+use crate::compliant::{HERTZ, detected, moduli, steps};
+use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::step::Simulation;
+
+/// An impact of a dozen steps, in each of which the balls move farther than a hundredth of their
+/// radius: each step is solved once, and the alert distance changes nothing.
+#[test]
+fn a_fast_impact_depends_on_no_alert_distance() {
+    let impact = |alert: f64| {
+        let mut s: Simulation<Dim3> = detected(
+            alert,
+            HERTZ,
+            &moduli("restitution: 1.0, mu: 0.3"),
+            4e-5,
+            r#"grains: [List(material: "grain", grains: [
+                (at: [-0.05, 0.0, 0.0], radius: 0.05, velocity: [10.0, 0.0, 0.0]),
+                (at: [0.0495, 0.01, 0.0], radius: 0.05, velocity: [-10.0, 0.0, 0.0])])]"#,
+        );
+        let mut deepest = 0.0f64;
+        for _ in 0..12 {
+            steps(&mut s, 1);
+            let gaps = s.state.network.contacts.iter().map(|c| -c.gap);
+            deepest = gaps.fold(deepest, f64::max);
+        }
+        assert!(deepest > 1e-3, "{deepest:e}");
+        assert_eq!(s.state.network.step_size.repeated_solves, 0);
+        assert_eq!(s.state.network.step_size.passed, 0);
+        (s.state.bodies.velocity[0], s.state.bodies.spin[0])
+    };
+    assert_eq!(impact(1e-4), impact(1e-2));
+}
+
+/// A ball that an impact throws onto a neighbour within the same step: their spring, which did not
+/// close before, pushes in this step.
+#[test]
+fn a_spring_that_closes_by_an_impact_of_the_step_pushes_in_it() {
+    let mut s: Simulation<Dim3> = detected(
+        1e-3,
+        HERTZ,
+        &moduli("restitution: 1.0, mu: 0.0"),
+        2e-4,
+        r#"grains: [List(material: "grain", grains: [
+            (at: [-0.1, 0.0, 0.0], radius: 0.05, velocity: [10.0, 0.0, 0.0]),
+            (at: [0.0, 0.0, 0.0], radius: 0.05),
+            (at: [0.10005, 0.0, 0.0], radius: 0.05)])]"#,
+    );
+    steps(&mut s, 1);
+    let [one, other] = [1, 2].map(|b| s.state.bodies.velocity[b].x);
+    assert!(one > 1.0 && other > 0.1, "{one} {other}");
+    assert!(s.state.network.step_size.repeated_solves > 0);
+    assert_eq!(s.state.network.step_size.passed, 0);
+}
+
+/// A disk that runs around a drum by 0.4 of its radius a step stays within it: the normal of its
+/// spring turns in each step.
+#[test]
+fn a_spring_turns_with_the_wall_of_a_drum() {
+    let mut s: Simulation<Dim2> = detected(
+        1e-3,
+        HERTZ,
+        &moduli("restitution: 1.0, mu: 0.0"),
+        1e-4,
+        r#"bodies: [(name: "drum", material: "grain", shapes: [Drum(radius: 0.5)])],
+        grains: [List(material: "grain", grains: [
+            (at: [0.0, -0.4499], radius: 0.05, velocity: [200.0, 0.0])])]"#,
+    );
+    let (mut deepest, energy) = (0.0f64, s.state.bodies.energy_of(0));
+    for _ in 0..200 {
+        steps(&mut s, 1);
+        let place = s.state.bodies.position[0];
+        deepest = deepest.max(place.norm() - 0.45);
+    }
+    assert!(deepest < 0.25 * 0.05, "{deepest:e}");
+    let kept = s.state.bodies.energy_of(0) / energy;
+    assert!(kept > 0.5 && kept < 1.5, "{kept}");
+}
