@@ -37,7 +37,7 @@ fn a_fast_impact_depends_on_no_alert_distance() {
 #[test]
 fn a_spring_that_closes_by_an_impact_of_the_step_pushes_in_it() {
     let mut s: Simulation<Dim3> = detected(
-        1e-3,
+        1e-4,
         HERTZ,
         &moduli("restitution: 1.0, mu: 0.0"),
         2e-4,

@@ -351,7 +351,7 @@ fn the_memory_and_cost_of_deformable_bodies_are_told() {
     }
     let (_, _, text) = check("sphere_on_flat_fretting", &[]);
     assert!(
-        text.contains("768 unknowns; memory: tables of influences 221 kB"),
+        text.contains("768 unknowns; memory: tables of influences 152 kB"),
         "{text}"
     );
     let (_, _, text) = check("verification/rubber_block", &[]);
