@@ -1,4 +1,5 @@
-//! Binary serialization of state, and bytes as text. Floats keep their bits, including infinities and NaN.
+//! Binary serialization of state, and bytes as text. Floats keep their bits, including infinities
+//! and NaN.
 //!
 //! The format is postcard: fields in order without names, so a state can only be read by the
 //! program version that wrote it. The enclosing frame records that version.
