@@ -21,11 +21,11 @@ pub fn moduli(more: &str) -> String {
 
 /// A scene whose bodies are of one material with one contact law and its parameters.
 fn built<S: Space>(law: &str, parameters: &str, step: f64, rest: &str) -> Simulation<S> {
-    detected(1e-3, law, parameters, step, rest)
+    built_with_alert(1e-3, law, parameters, step, rest)
 }
 
 /// The scene with an alert distance (m).
-pub fn detected<S: Space>(
+pub fn built_with_alert<S: Space>(
     alert: f64,
     law: &str,
     parameters: &str,

@@ -1,6 +1,6 @@
 //! Compliant contacts whose bodies move farther in a step than contact detection looks ahead.
 
-use crate::compliant::{HERTZ, detected, moduli, steps};
+use crate::compliant::{HERTZ, built_with_alert, moduli, steps};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::step::Simulation;
 
@@ -9,7 +9,7 @@ use fretwork::step::Simulation;
 #[test]
 fn a_fast_impact_depends_on_no_alert_distance() {
     let impact = |alert: f64| {
-        let mut s: Simulation<Dim3> = detected(
+        let mut s: Simulation<Dim3> = built_with_alert(
             alert,
             HERTZ,
             &moduli("restitution: 1.0, mu: 0.3"),
@@ -36,7 +36,7 @@ fn a_fast_impact_depends_on_no_alert_distance() {
 /// close before, pushes in this step.
 #[test]
 fn a_spring_that_closes_by_an_impact_of_the_step_pushes_in_it() {
-    let mut s: Simulation<Dim3> = detected(
+    let mut s: Simulation<Dim3> = built_with_alert(
         1e-4,
         HERTZ,
         &moduli("restitution: 1.0, mu: 0.0"),
@@ -57,7 +57,7 @@ fn a_spring_that_closes_by_an_impact_of_the_step_pushes_in_it() {
 /// spring turns in each step.
 #[test]
 fn a_spring_turns_with_the_wall_of_a_drum() {
-    let mut s: Simulation<Dim2> = detected(
+    let mut s: Simulation<Dim2> = built_with_alert(
         1e-3,
         HERTZ,
         &moduli("restitution: 1.0, mu: 0.0"),

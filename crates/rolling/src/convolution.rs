@@ -1,7 +1,7 @@
 //! Convolutions over the cells of a patch by Fourier transforms.
 
 use crate::fields::{Field, Vector};
-use fretwork_elastic::half_space::{CellGrid, Complex64, Transforms, without_repeats};
+use fretwork_elastic::half_space::{CellGrid, Complex64, Transforms, padded_length};
 
 /// Transforms over a table of twice the size of the grid, so that nothing repeats.
 #[derive(Debug)]
@@ -18,7 +18,7 @@ impl Convolution {
     pub fn new(grid: &CellGrid) -> Self {
         Self {
             cells: grid.cells,
-            transforms: Transforms::new(grid.cells.map(without_repeats)),
+            transforms: Transforms::new(grid.cells.map(padded_length)),
         }
     }
 
@@ -84,7 +84,7 @@ impl Convolution {
     }
 
     /// Returns the convolution of a field of numbers with a table.
-    pub fn of_one(&self, values: &[f64], table: &Spectrum) -> Vec<f64> {
+    pub fn convolve(&self, values: &[f64], table: &Spectrum) -> Vec<f64> {
         let mut waves = self.transforms.forward(values, self.cells);
         let norm = self.norm();
         for (wave, factor) in waves.iter_mut().zip(table) {

@@ -66,7 +66,7 @@ impl Surfaces {
 
     /// Returns the sum of the normal displacements of both surfaces by pressures (m).
     pub fn normal(&self, pressure: &[f64]) -> Vec<f64> {
-        self.convolution.of_one(pressure, &self.normal)
+        self.convolution.convolve(pressure, &self.normal)
     }
 
     /// Returns whether pressures move the surfaces along each other, and tractions apart.

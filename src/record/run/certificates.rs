@@ -27,7 +27,7 @@ pub(super) struct Certificates {
 
 impl Certificates {
     /// Reads those that earlier runs kept. A file that cannot be read has none.
-    pub fn kept(file: Option<PathBuf>) -> Self {
+    pub fn read(file: Option<PathBuf>) -> Self {
         let file = file.filter(|f| reason_to_distrust(f).is_none());
         let size = |file: &PathBuf| fs::metadata(file).map(|m| m.len());
         if let Some(file) = file.as_ref().filter(|f| size(f).is_ok_and(|s| s > LARGEST)) {

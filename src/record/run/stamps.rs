@@ -12,7 +12,7 @@ use std::path::PathBuf;
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
     let mut certifier = Certifier {
         path: partners(),
-        certificates: Certificates::kept(file()),
+        certificates: Certificates::read(file()),
     };
     let mut stamps: Vec<PluginStamp> = Vec::new();
     for interface in laws {

@@ -3,7 +3,7 @@
 
 use super::grid::CellGrid;
 use super::influence::{Influence, rectangle, strip, uniform, wave};
-use super::transforms::{Transforms, without_repeats};
+use super::transforms::{Transforms, padded_length};
 use crate::material::Elasticity;
 use rustfft::num_complex::Complex64;
 use std::sync::OnceLock;
@@ -44,7 +44,7 @@ impl Kernel {
         let periodic = matches!(reach, Reach::Periodic(_));
         let table = grid.cells.map(|n| match n {
             n if periodic => n,
-            n => without_repeats(n),
+            n => padded_length(n),
         });
         let transforms = Transforms::new(table);
         let influence = match reach {

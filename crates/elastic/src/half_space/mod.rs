@@ -31,7 +31,7 @@ pub use error::HalfSpaceError;
 pub use grid::CellGrid;
 pub use kernel::{Kernel, Reach};
 pub use profile::Profile;
-pub use transforms::{Complex64, Transforms, without_repeats};
+pub use transforms::{Complex64, Transforms, padded_length};
 
 use crate::material::Elasticity;
 use crate::touching_surface::open_surface;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// Returns the length of a table in which a convolution over this number of cells does not repeat:
 /// at least twice as long, even, and without prime factors above 5, for which transforms are fast.
-pub fn without_repeats(cells: usize) -> usize {
+pub fn padded_length(cells: usize) -> usize {
     let simple = |mut n: usize| {
         for p in [2, 3, 5] {
             while n.is_multiple_of(p) {

@@ -94,7 +94,8 @@ pub fn add_predicted<S: Space>(
 ///
 /// A spring that pushed in the solve overlaps by its law, however far its bodies move: `acts` tells
 /// whether the contact of an index did. Such a pair is not solved again while its normal stays, and
-/// only reported where it passes through. A spring that did not push was not known to close.
+/// only reported where it passes through. A spring that did not push was not known to close: the
+/// step is solved again, with the place where its bodies meet.
 pub fn find_missed<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,
