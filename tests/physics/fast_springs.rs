@@ -74,5 +74,6 @@ fn a_spring_turns_with_the_wall_of_a_drum() {
     }
     assert!(deepest < 0.25 * 0.05, "{deepest:e}");
     let kept = s.state.bodies.energy_of(0) / energy;
-    assert!(kept > 0.5 && kept < 1.5, "{kept}");
+    // The rest is in the spring (0.2 %) and lost by time integration.
+    assert!(kept > 0.99 && kept < 1.0, "{kept}");
 }
