@@ -53,8 +53,10 @@ fn a_spring_that_closes_by_an_impact_of_the_step_pushes_in_it() {
     assert_eq!(s.state.network.step_size.passed, 0);
 }
 
-/// A disk that runs around a drum by 0.4 of its radius a step stays within it: the normal of its
-/// spring turns in each step.
+/// A disk that slides around a drum by 0.4 of its radius a step stays within it, although the normal
+/// of its spring turns in each step. The spring of a line contact, k = pi/4 E* (N/m^2; E* with the
+/// moduli of both bodies), overlaps by m v^2 / (R k) on the path with the radius R = 0.45 m, up to
+/// twice as much while the overlap oscillates.
 #[test]
 fn a_spring_turns_with_the_wall_of_a_drum() {
     let mut s: Simulation<Dim2> = built_with_alert(
@@ -66,12 +68,15 @@ fn a_spring_turns_with_the_wall_of_a_drum() {
         grains: [List(material: "grain", grains: [
             (at: [0.0, -0.4499], radius: 0.05, velocity: [200.0, 0.0])])]"#,
     );
-    let (mut deepest, energy) = (0.0f64, s.state.bodies.energy_of(0));
+    let (mut deepest, mut sum, energy) = (0.0f64, 0.0, s.state.bodies.energy_of(0));
     for _ in 0..200 {
         steps(&mut s, 1);
-        let place = s.state.bodies.position[0];
-        deepest = deepest.max(place.norm() - 0.45);
+        let overlap = s.state.bodies.position[0].norm() - 0.45;
+        deepest = deepest.max(overlap);
+        sum += overlap;
     }
+    println!("DRUM {deepest:e} {:e} {:e}", sum / 200.0, s.state.bodies.mass[0]);
+    assert_eq!(s.state.network.step_size.repeated_solves, 0);
     assert!(deepest < 0.25 * 0.05, "{deepest:e}");
     let kept = s.state.bodies.energy_of(0) / energy;
     // The rest is in the spring (0.2 %) and lost by time integration.

@@ -19,6 +19,10 @@ crate::described! {
         pub interior_tried: u64 => ONE,
         /// Steps in which the interior point solver converged.
         pub interior_ended: u64 => ONE,
+        /// Steps in which Newton in velocities was tried.
+        pub velocities_tried: u64 => ONE,
+        /// Steps in which Newton in velocities converged.
+        pub velocities_ended: u64 => ONE,
         /// Ratio of unknowns to degrees of freedom of the contacts that carry force; mean over the
         /// steps in which either solver was tried.
         pub hyperstaticity_mean: f64 => ONE,
@@ -42,6 +46,10 @@ impl SolverStats {
             SolvePath::Longer { .. } => self.swept_longer += 1,
             SolvePath::Unserved => self.newton_unserved += 1,
             SolvePath::Large => self.too_large += 1,
+            SolvePath::InVelocities { newton, .. } => {
+                self.velocities_tried += u64::from(newton != Attempt::No);
+                self.velocities_ended += u64::from(newton == Attempt::Ended);
+            }
             SolvePath::Factorised {
                 after,
                 hyperstaticity,
@@ -84,6 +92,12 @@ impl SolverStats {
                     0 => String::new(),
                     n => format!(", {n} of them because the contacts were hyperstatic"),
                 }
+            );
+        }
+        if self.velocities_tried > 0 {
+            return format!(
+                "newton in velocities was tried in {} of {steps} steps, where sweeps would have taken longer, and converged in {}; sweeps solved the other steps",
+                self.velocities_tried, self.velocities_ended
             );
         }
         if self.swept_longer > 0 {

@@ -21,6 +21,7 @@ use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
 use super::standard::Standard;
 use super::sticking;
+use super::velocities::Start;
 use crate::geometry::space::{Space, VectorLike};
 use std::ops::RangeInclusive;
 
@@ -49,6 +50,10 @@ const NEWTON: u32 = 40;
 /// because of slow propagation, as in a column, not for lack of rank. Above it the interior point
 /// failed in 7 attempts of 8.
 const DETERMINED: f64 = 0.95;
+/// Number of Gauss-Seidel iterations before Newton in velocities: about the time of a solve of 5
+/// iterations, each of which costs some 60 sweeps (`cargo bench -p fretwork-core --bench
+/// velocities`).
+const SWEEPS_BEFORE_VELOCITIES: u32 = 300;
 /// Number of times that a factorising method is called with a smaller tolerance, in general and
 /// where contacts act on systems.
 const ATTEMPTS: [u32; 2] = [4, 20];
@@ -61,12 +66,14 @@ pub fn solve<S: Space>(
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
     options: &SolverOptions,
+    start: Start<S>,
     auto_state: &mut AutoState,
 ) -> Report {
     let context = SolveContext {
         forms,
         moments,
         options,
+        start: Some(start),
     };
     let mut report = match options.method {
         Method::Nlgs => context.sweep(problem, options.max_iterations),
@@ -101,6 +108,12 @@ impl<S: Space> SolveContext<'_, S> {
     /// the method continues.
     fn solve_by(&self, problem: &mut Problem<S>, method: Method) -> Report {
         let mut report = nlgs::arrange(problem, self.options);
+        if method == Method::Newton
+            && !report.converged
+            && let Some(solved) = self.solve_in_velocities(problem, self.options.max_iterations)
+        {
+            return solved;
+        }
         let (tolerance, most) = (self.options.tolerance, self.options.max_iterations);
         let attempts = ATTEMPTS[usize::from(!problem.of_systems.is_empty())];
         self.improve_until(problem, &mut report, method, (tolerance, most, attempts));
@@ -201,6 +214,9 @@ impl<S: Space> SolveContext<'_, S> {
                 };
             }
         }
+        if self.velocities_serve(problem) {
+            return self.sweeps_or_velocities(problem, auto_state);
+        }
         let sweeps = self.sweeps_before_newton(problem, auto_state);
         let rolls = |m: &MomentForm<S>| m.rolling > 0.0 || m.spinning > 0.0;
         let features = Features {
@@ -255,6 +271,32 @@ impl<S: Space> SolveContext<'_, S> {
                 interior,
             },
         );
+        report
+    }
+
+    /// Solves a problem of contacts that yield: by Gauss-Seidel, by Newton in velocities where that
+    /// takes longer, and where Newton fails by Gauss-Seidel to the end.
+    fn sweeps_or_velocities(&self, problem: &mut Problem<S>, auto_state: &mut AutoState) -> Report {
+        let most = self.options.max_iterations;
+        let patience = auto_state.patience.min(f64::from(most));
+        let sweeps = (f64::from(SWEEPS_BEFORE_VELOCITIES) * patience) as u32;
+        let mut report = self.sweep_accelerated(problem, most.min(sweeps));
+        let left = most - report.iterations;
+        if report.converged || report.unbounded || left == 0 {
+            return report;
+        }
+        let after = report.iterations;
+        let mut newton = Attempt::No;
+        if let Some(solved) = self.solve_in_velocities(problem, left) {
+            report.add(&solved);
+            newton = if solved.converged { Attempt::Ended } else { Attempt::Failed };
+        }
+        auto_state.adapt(newton == Attempt::Ended);
+        report.chosen = SolvePath::InVelocities { after, newton };
+        let left = most.saturating_sub(report.iterations);
+        if newton != Attempt::Ended && left > 0 {
+            report.add(&self.sweep_accelerated(problem, left));
+        }
         report
     }
 

@@ -40,6 +40,13 @@ pub enum SolvePath {
         /// Result of the interior point.
         interior: Attempt,
     },
+    /// Gauss-Seidel used its allowance, and Newton in velocities was tried.
+    InVelocities {
+        /// Number of Gauss-Seidel iterations before it.
+        after: u32,
+        /// Its result.
+        newton: Attempt,
+    },
     /// Gauss-Seidel used its allowance and continued, because Newton does not support friction
     /// against rotation.
     Unserved,

@@ -7,6 +7,7 @@ use super::problem::Problem;
 use super::row::MomentForm;
 use super::search::SecondSearch;
 use super::standard;
+use super::velocities::{self, Start};
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -74,6 +75,8 @@ pub(super) struct SolveContext<'a, S: Space> {
     pub(super) forms: &'a [ContactForm<S>],
     pub(super) moments: &'a [MomentForm<S>],
     pub(super) options: &'a SolverOptions,
+    /// Velocities before the step; `None` for a part of its bodies.
+    pub(super) start: Option<Start<'a, S>>,
 }
 
 impl<S: Space> SolveContext<'_, S> {
@@ -119,6 +122,31 @@ impl<S: Space> SolveContext<'_, S> {
             used: method,
             ..nlgs::check_convergence(problem, self.options)
         }
+    }
+
+    /// Solves by Newton's method in the velocities of the bodies, if it serves the problem.
+    pub(super) fn solve_in_velocities(
+        &self,
+        problem: &mut Problem<S>,
+        most: u32,
+    ) -> Option<Report> {
+        let start = self.start.as_ref()?;
+        if !self.velocities_serve(problem) {
+            return None;
+        }
+        let options = SolverOptions {
+            max_iterations: most,
+            ..*self.options
+        };
+        Some(Report {
+            used: Method::Newton,
+            ..velocities::solve(problem, self.forms, self.moments, start, &options)
+        })
+    }
+
+    /// Whether Newton's method in the velocities serves the problem.
+    pub(super) fn velocities_serve(&self, problem: &Problem<S>) -> bool {
+        velocities::serves(problem, self.forms, self.moments)
     }
 
     /// Restores the impulses of the forms.

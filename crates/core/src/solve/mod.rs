@@ -39,6 +39,7 @@ pub mod standard;
 mod sticking;
 mod systems;
 mod traction;
+mod velocities;
 
 pub use choose::solve;
 pub use chosen::{Attempt, SolvePath};
@@ -51,3 +52,4 @@ pub use requirements::{Features, Operator, refusal};
 pub use row::{MomentForm, MomentSolution};
 pub use side::Side;
 pub use sticking::begins_to_slide;
+pub use velocities::Start;

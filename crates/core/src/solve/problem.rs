@@ -7,6 +7,7 @@ use super::loaded::LoadedPoints;
 use super::nodal::NodalSystem;
 use super::row::{MomentForm, MomentRow, MomentSolution, Parts, SolverBody, SystemRow};
 use super::traction::Tractions;
+use super::velocities;
 use crate::geometry::space::Space;
 
 /// The contact problem of one step. Push the bodies, then the contacts.
@@ -60,6 +61,8 @@ pub struct Problem<S: Space> {
     pub(super) places: Vec<RowPlace>,
     /// Connected sets of the contacts, as last computed.
     pub(super) connected: ConnectedSets,
+    /// Pattern of the matrix over the motions of bodies, of the last solve in velocities.
+    pub(super) velocity_pattern: velocities::Pattern,
     /// Whether a contact has a compliance.
     pub(super) compliant: bool,
     /// Contacts of each kind between rigid bodies, as they are added.
@@ -83,6 +86,7 @@ impl<S: Space> Default for Problem<S> {
             moments: Vec::new(),
             places: Vec::new(),
             connected: ConnectedSets::default(),
+            velocity_pattern: velocities::Pattern::default(),
             compliant: false,
             of_kind: Default::default(),
             controlled: Vec::new(),

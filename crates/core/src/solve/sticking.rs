@@ -441,6 +441,7 @@ impl<S: Space> SolveContext<'_, S> {
             forms: &forms,
             moments: &moments,
             options: &options,
+            start: None,
         };
         let now = of
             .iter()

@@ -17,9 +17,6 @@ use crate::threads;
 /// Factor on the required range of the neighbour list, so that the list stays valid while bodies
 /// accelerate.
 const HEADROOM: f64 = 1.5;
-/// Cosine of the angle by which the normal of a spring may turn within a step (8 degrees): beyond
-/// it the spring takes the normal of the place where its bodies meet.
-const SAME_NORMAL: f64 = 0.99;
 /// Pairs per task.
 const CHUNK: usize = 256;
 /// Approximate time to examine a pair (ns).
@@ -84,8 +81,8 @@ pub fn add_predicted<S: Space>(
     scene: &CollisionScene<S>,
     motion: &StepMotion<S>,
 ) {
-    let found = find_closing(network, scene, motion, SearchStage::Before);
-    network.merge_contacts(found);
+    let closing = find_closing(network, scene, motion, SearchStage::Before);
+    network.merge_contacts(closing.contacts);
 }
 
 /// Returns the contacts that the velocities after a solve would close in the step and that were not
@@ -93,23 +90,30 @@ pub fn add_predicted<S: Space>(
 /// [`Network::merge_contacts`].
 ///
 /// A spring that pushed in the solve overlaps by its law, however far its bodies move: `acts` tells
-/// whether the contact of an index did. Such a pair is not solved again while its normal stays, and
-/// only reported where it passes through. A spring that did not push was not known to close: the
-/// step is solved again, with the place where its bodies meet.
+/// whether the contact of an index did. Such a contact is not solved for again, its pair only
+/// reported where it passes through. A spring that did not push was not known to close: the step is
+/// solved again, with the place where its bodies meet.
 pub fn find_missed<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,
     motion: &StepMotion<S>,
     acts: impl Fn(usize) -> bool,
 ) -> Vec<Contact<S>> {
-    let mut found = find_closing(network, scene, motion, SearchStage::After);
-    let closing = found.len();
-    found.retain(|contact| !network.is_held_by_spring(contact, &acts));
-    if found.len() < closing && found.is_empty() {
-        report_passing(network, scene, motion);
+    let mut closing = find_closing(network, scene, motion, SearchStage::After);
+    let found = closing.contacts.len();
+    closing.contacts.retain(|c| !network.is_held_by_spring(c, &acts));
+    if !closing.contacts.is_empty() {
+        network.step_size.repeated_solves += 1;
+        return closing.contacts;
     }
-    network.step_size.repeated_solves += u64::from(!found.is_empty());
-    found
+    if found > 0 {
+        let springs = find_closing(network, scene, motion, SearchStage::Report);
+        closing.passing.extend(springs.passing);
+        closing.passing.sort_by_key(|pair| pair.names);
+        closing.passing.dedup_by_key(|pair| pair.names);
+    }
+    record_passing(network, scene, motion, &closing.passing);
+    Vec::new()
 }
 
 /// Reports the pairs that penetrate in the step despite the contacts solved for.
@@ -118,7 +122,20 @@ pub fn report_passing<S: Space>(
     scene: &CollisionScene<S>,
     motion: &StepMotion<S>,
 ) {
-    find_closing(network, scene, motion, SearchStage::Report);
+    let closing = find_closing(network, scene, motion, SearchStage::Report);
+    record_passing(network, scene, motion, &closing.passing);
+}
+
+fn record_passing<S: Space>(
+    network: &mut Network<S>,
+    scene: &CollisionScene<S>,
+    motion: &StepMotion<S>,
+    pairs: &[PassingPair],
+) {
+    for pair in pairs {
+        let first = || Occurrence::new(motion.time, scene.bodies, &pair.bodies);
+        network.step_size.record_passing(first);
+    }
 }
 
 /// Reports the pairs that penetrate in a move before detection, at the current velocities, which no
@@ -263,19 +280,35 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
     network.widened.iter_mut().for_each(|w| *w = 0.0);
 }
 
-/// Finds the contacts of the pairs that meet in the step, in the order of the pairs, or reports the
-/// pairs.
+/// A pair that may pass through each other in the step.
+struct PassingPair {
+    names: (u32, u32),
+    bodies: [u32; 2],
+}
+
+/// Contacts that close in the step, and pairs that they cannot keep from passing, both in the order
+/// of the pairs.
+struct Closing<S: Space> {
+    contacts: Vec<Contact<S>>,
+    passing: Vec<PassingPair>,
+}
+
+/// Finds the contacts of the pairs that meet in the step, or the pairs to report.
 fn find_closing<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,
     motion: &StepMotion<S>,
     stage: SearchStage,
-) -> Vec<Contact<S>> {
+) -> Closing<S> {
+    let (mut found, mut passing) = (Vec::new(), Vec::new());
     let travels = widen(network, scene, motion);
     let farthest = longest(motion.parallel, &travels);
     let turning = network.turning.iter().any(|w| *w > 0.0);
     if 2.0 * farthest <= network.fast && !turning {
-        return Vec::new();
+        return Closing {
+            contacts: found,
+            passing,
+        };
     }
     let extents = std::mem::take(&mut network.extents);
     let candidates = std::mem::take(&mut network.candidates);
@@ -338,7 +371,7 @@ fn find_closing<S: Space>(
         threads::chunk_size(CHUNK),
         |_, pairs| examine(pairs),
     );
-    let (mut found, mut meetings) = (Vec::new(), Vec::new());
+    let mut meetings = Vec::new();
     for meeting in met.into_iter().flatten() {
         let first = found.len();
         found.extend(meeting.contacts);
@@ -352,8 +385,10 @@ fn find_closing<S: Space>(
             });
         }
         if meeting.passing {
-            let first = || Occurrence::new(motion.time, scene.bodies, &meeting.bodies);
-            network.step_size.record_passing(first);
+            passing.push(PassingPair {
+                names: meeting.names,
+                bodies: meeting.bodies,
+            });
         }
     }
     if stage == SearchStage::Before {
@@ -361,17 +396,18 @@ fn find_closing<S: Space>(
     }
     network.candidates = candidates;
     network.extents = extents;
-    found
+    Closing {
+        contacts: found,
+        passing,
+    }
 }
 
 impl<S: Space> Network<S> {
-    /// Returns whether a compliant contact with the key of this one acts, along the same normal.
+    /// Returns whether a compliant contact with the key of this one acts.
     fn is_held_by_spring(&self, contact: &Contact<S>, acts: impl Fn(usize) -> bool) -> bool {
         let find = || self.contacts.binary_search_by_key(&contact.key, |c| c.key);
         self.memory[contact.law as usize].compliant
-            && find().is_ok_and(|at| {
-                acts(at) && self.contacts[at].normal.dot(&contact.normal) > SAME_NORMAL
-            })
+            && find().is_ok_and(acts)
     }
 
     /// Merges contacts that close in the step into the network; contacts that already exist get the

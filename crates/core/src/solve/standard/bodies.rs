@@ -4,7 +4,7 @@
 //! A side that is a dynamical system acts on nodes: its body, which represents a contactor, has no
 //! inertia and no velocity here.
 
-use super::pattern::Pattern;
+use super::pattern::Neighbours;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::local::block::{Block, BlockMatrix};
@@ -113,7 +113,7 @@ pub struct BodyOperator<'a, S: Space, const D: usize> {
     pub diagonal: Vec<Block<D>>,
     scratch: RefCell<Motions<S>>,
     matrix: OnceCell<BlockMatrix<D>>,
-    pattern: OnceCell<Pattern>,
+    pattern: OnceCell<Neighbours>,
 }
 
 impl<'a, S: Space, const D: usize> BodyOperator<'a, S, D> {
@@ -135,10 +135,10 @@ impl<'a, S: Space, const D: usize> BodyOperator<'a, S, D> {
     }
 
     /// Returns the pairs of bodies in contact.
-    pub(super) fn pattern(&self) -> &Pattern {
+    pub(super) fn pattern(&self) -> &Neighbours {
         let pairs = self.unknowns.iter().map(|unknown| unknown.bodies);
         self.pattern
-            .get_or_init(|| Pattern::new(self.masses, pairs))
+            .get_or_init(|| Neighbours::new(self.masses, pairs))
     }
 
     /// Returns M^-1 of an impulse and moment on a body.

@@ -24,6 +24,9 @@ use super::nodal::NodalSystem;
 use super::problem::Problem;
 use super::row::{HELD, MomentForm, SystemRow, Term, turning};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
+pub(super) use motion::mass;
+pub(super) use pattern::{Neighbours, degrees_of_freedom};
+
 use bodies::{Axis, BodyOperator, Motions, Unknown};
 
 /// Impulses of the contacts, and moments; `None` between immovable bodies.

@@ -10,7 +10,7 @@
 )]
 
 use super::bodies::BodyOperator;
-use super::pattern::{Pattern, size};
+use super::pattern::{Neighbours, degrees_of_freedom};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::local::block::{Block, times};
@@ -19,9 +19,9 @@ use crate::solve::local::form::Delassus;
 use crate::solve::local::linear::{Factor, SparseRows};
 
 /// Returns the mass matrix of a body, with ones for imposed degrees of freedom.
-fn mass<S: Space>(mobility: &Mobility<S>) -> [[f64; 6]; 6] {
+pub(in crate::solve) fn mass<S: Space>(mobility: &Mobility<S>) -> [[f64; 6]; 6] {
     let mut out = [[0.0; 6]; 6];
-    for (k, row) in out.iter_mut().enumerate().take(size::<S>()) {
+    for (k, row) in out.iter_mut().enumerate().take(degrees_of_freedom::<S>()) {
         let inverse = mobility.along(k);
         row[k] = if inverse > 0.0 { 1.0 / inverse } else { 1.0 };
     }
@@ -84,7 +84,7 @@ impl<S: Space, const D: usize> BodyOperator<'_, S, D> {
         std::array::from_fn(|i| {
             if i < S::D {
                 sign * axis.linear[i]
-            } else if i < size::<S>() {
+            } else if i < degrees_of_freedom::<S>() {
                 sign * axis.angular[side][i - S::D]
             } else {
                 0.0
@@ -103,7 +103,7 @@ impl<S: Space, const D: usize> BodyOperator<'_, S, D> {
             }
         }
         let pattern = self.pattern();
-        let d = size::<S>();
+        let d = degrees_of_freedom::<S>();
         let mut r = Vec::with_capacity(s.len());
         for (c, s) in s.iter().enumerate() {
             let mut s = *s;
@@ -154,8 +154,8 @@ impl<S: Space, const D: usize> BodyOperator<'_, S, D> {
 
     /// Returns M with the sparsity pattern of the system; an imposed degree of freedom has a
     /// decoupled row.
-    fn masses_alone(&self, pattern: &Pattern) -> SparseRows {
-        let d = size::<S>();
+    fn masses_alone(&self, pattern: &Neighbours) -> SparseRows {
+        let d = degrees_of_freedom::<S>();
         let mut a = SparseRows::default();
         a.starts.push(0);
         for (b, near) in pattern.near.iter().enumerate() {
@@ -190,7 +190,7 @@ impl<S: Space, const D: usize> MotionFactors<'_, S, D> {
                 }
                 for k in 0..D {
                     let column = self.w.column(c, k, side);
-                    for p in 0..size::<S>() {
+                    for p in 0..degrees_of_freedom::<S>() {
                         if self.w.masses[body as usize].along(p) > 0.0 {
                             y[pattern.starts[body as usize] + p] += column[p] * x[k];
                         }
@@ -207,7 +207,7 @@ impl<S: Space, const D: usize> MotionFactors<'_, S, D> {
                 if pattern.moves(body) {
                     for k in 0..D {
                         let column = self.w.column(c, k, side);
-                        for p in 0..size::<S>() {
+                        for p in 0..degrees_of_freedom::<S>() {
                             left[k] -= column[p] * y[pattern.starts[body as usize] + p];
                         }
                     }

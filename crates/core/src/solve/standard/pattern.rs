@@ -4,7 +4,8 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::Mobility;
 
 /// Pairs of bodies in contact.
-pub(super) struct Pattern {
+#[derive(Clone, Debug, Default)]
+pub(in crate::solve) struct Neighbours {
     /// First row of each body; immovable bodies have no rows.
     pub starts: Vec<usize>,
     /// Movable neighbours of each body, including itself, increasing.
@@ -12,12 +13,12 @@ pub(super) struct Pattern {
 }
 
 /// Returns the number of degrees of freedom of a body.
-pub(super) fn size<S: Space>() -> usize {
+pub(in crate::solve) fn degrees_of_freedom<S: Space>() -> usize {
     S::D + S::Spin::N
 }
 
-impl Pattern {
-    /// Finds the pattern of bodies with these mobilities from the pairs that are in contact.
+impl Neighbours {
+    /// Finds the neighbours among bodies with these mobilities from the pairs that are in contact.
     pub fn new<S: Space>(masses: &[Mobility<S>], pairs: impl Iterator<Item = [u32; 2]>) -> Self {
         let moves: Vec<bool> = masses.iter().map(Mobility::moves).collect();
         let mut near: Vec<Vec<u32>> = (0..masses.len())
@@ -33,7 +34,7 @@ impl Pattern {
         for (near, moves) in near.iter_mut().zip(&moves) {
             near.sort_unstable();
             near.dedup();
-            starts.push(starts[starts.len() - 1] + if *moves { size::<S>() } else { 0 });
+            starts.push(starts[starts.len() - 1] + if *moves { degrees_of_freedom::<S>() } else { 0 });
         }
         Self { starts, near }
     }
@@ -43,6 +44,16 @@ impl Pattern {
         self.starts[self.near.len()]
     }
 
+    /// Returns whether the same bodies move as in `other`, and all neighbours there are neighbours
+    /// here.
+    pub fn contains(&self, other: &Self) -> bool {
+        let all = |(near, others): (&Vec<u32>, &Vec<u32>)| {
+            others.iter().all(|b| near.binary_search(b).is_ok())
+        };
+        self.starts == other.starts && self.near.iter().zip(&other.near).all(all)
+    }
+
+    /// Whether a body moves.
     pub fn moves(&self, body: u32) -> bool {
         !self.near[body as usize].is_empty()
     }
