@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 /// E* of two bodies of `STEEL` (Pa), and R.
-const MODULUS: f64 = 2e9 / (2.0 * (1.0 - 0.09));
+pub const MODULUS: f64 = 2e9 / (2.0 * (1.0 - 0.09));
 /// Hertz' spring of a material of 2 GPa.
 pub const HERTZ: &str = r#"contact: "hertz-mindlin""#;
 

@@ -1,8 +1,9 @@
 //! Compliant contacts whose bodies move farther in a step than contact detection looks ahead.
 
-use crate::compliant::{HERTZ, built_with_alert, moduli, steps};
+use crate::compliant::{HERTZ, MODULUS, built_with_alert, moduli, steps};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::step::Simulation;
+use std::f64::consts::PI;
 
 /// An impact of a dozen steps, in each of which the balls move farther than a hundredth of their
 /// radius: each step is solved once, and the alert distance changes nothing.
@@ -75,7 +76,11 @@ fn a_spring_turns_with_the_wall_of_a_drum() {
         deepest = deepest.max(overlap);
         sum += overlap;
     }
-    println!("DRUM {deepest:e} {:e} {:e}", sum / 200.0, s.state.bodies.mass[0]);
+    println!(
+        "DRUM {deepest:e} {:e} {:e}",
+        sum / 200.0,
+        s.state.bodies.mass[0]
+    );
     assert_eq!(s.state.network.step_size.repeated_solves, 0);
     assert!(deepest < 0.25 * 0.05, "{deepest:e}");
     let kept = s.state.bodies.energy_of(0) / energy;

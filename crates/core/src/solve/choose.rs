@@ -21,7 +21,7 @@ use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
 use super::standard::Standard;
 use super::sticking;
-use super::velocities::Start;
+use super::velocities::{self, Start};
 use crate::geometry::space::{Space, VectorLike};
 use std::ops::RangeInclusive;
 
@@ -50,10 +50,6 @@ const NEWTON: u32 = 40;
 /// because of slow propagation, as in a column, not for lack of rank. Above it the interior point
 /// failed in 7 attempts of 8.
 const DETERMINED: f64 = 0.95;
-/// Number of Gauss-Seidel iterations before Newton in velocities: about the time of a solve of 5
-/// iterations, each of which costs some 60 sweeps (`cargo bench -p fretwork-core --bench
-/// velocities`).
-const SWEEPS_BEFORE_VELOCITIES: u32 = 300;
 /// Number of times that a factorising method is called with a smaller tolerance, in general and
 /// where contacts act on systems.
 const ATTEMPTS: [u32; 2] = [4, 20];
@@ -214,8 +210,10 @@ impl<S: Space> SolveContext<'_, S> {
                 };
             }
         }
-        if self.velocities_serve(problem) {
-            return self.sweeps_or_velocities(problem, auto_state);
+        if self.velocities_serve(problem)
+            && let Some(cost) = velocities::sweeps_per_iteration(problem)
+        {
+            return self.sweeps_or_velocities(problem, cost, auto_state);
         }
         let sweeps = self.sweeps_before_newton(problem, auto_state);
         let rolls = |m: &MomentForm<S>| m.rolling > 0.0 || m.spinning > 0.0;
@@ -275,23 +273,33 @@ impl<S: Space> SolveContext<'_, S> {
     }
 
     /// Solves a problem of contacts that yield: by Gauss-Seidel, by Newton in velocities where that
-    /// takes longer, and where Newton fails by Gauss-Seidel to the end.
-    fn sweeps_or_velocities(&self, problem: &mut Problem<S>, auto_state: &mut AutoState) -> Report {
+    /// takes longer, and where Newton fails by Gauss-Seidel to the end. An iteration of Newton takes
+    /// the time of `cost` sweeps.
+    fn sweeps_or_velocities(
+        &self,
+        problem: &mut Problem<S>,
+        cost: f64,
+        auto_state: &mut AutoState,
+    ) -> Report {
         let most = self.options.max_iterations;
-        let patience = auto_state.patience.min(f64::from(most));
-        let sweeps = (f64::from(SWEEPS_BEFORE_VELOCITIES) * patience) as u32;
+        let sweeps = (cost * auto_state.velocities.before()) as u32;
         let mut report = self.sweep_accelerated(problem, most.min(sweeps));
         let left = most - report.iterations;
         if report.converged || report.unbounded || left == 0 {
+            auto_state.velocities.sweeps_sufficed();
             return report;
         }
         let after = report.iterations;
         let mut newton = Attempt::No;
         if let Some(solved) = self.solve_in_velocities(problem, left) {
             report.add(&solved);
-            newton = if solved.converged { Attempt::Ended } else { Attempt::Failed };
+            newton = if solved.converged {
+                Attempt::Ended
+            } else {
+                Attempt::Failed
+            };
+            auto_state.velocities.tried(&solved);
         }
-        auto_state.adapt(newton == Attempt::Ended);
         report.chosen = SolvePath::InVelocities { after, newton };
         let left = most.saturating_sub(report.iterations);
         if newton != Attempt::Ended && left > 0 {

@@ -7,7 +7,7 @@ use super::problem::Problem;
 use super::row::MomentForm;
 use super::search::SecondSearch;
 use super::standard;
-use super::velocities::{self, Start};
+use super::velocities::{self, Patience, Start};
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +22,8 @@ pub struct AutoState {
     /// Number of times that the interior point is still to be skipped, and number of skips after
     /// its last failure.
     skipped: [u32; 2],
+    /// When to try Newton in velocities.
+    pub(super) velocities: Patience,
     /// State of the search for second solutions.
     pub(super) search: SecondSearch,
 }
@@ -32,6 +34,7 @@ impl Default for AutoState {
             patience: 1.0,
             interior_first: false,
             skipped: [0; 2],
+            velocities: Patience::default(),
             search: SecondSearch::default(),
         }
     }

@@ -101,7 +101,9 @@ pub fn find_missed<S: Space>(
 ) -> Vec<Contact<S>> {
     let mut closing = find_closing(network, scene, motion, SearchStage::After);
     let found = closing.contacts.len();
-    closing.contacts.retain(|c| !network.is_held_by_spring(c, &acts));
+    closing
+        .contacts
+        .retain(|c| !network.is_held_by_spring(c, &acts));
     if !closing.contacts.is_empty() {
         network.step_size.repeated_solves += 1;
         return closing.contacts;
@@ -406,8 +408,7 @@ impl<S: Space> Network<S> {
     /// Returns whether a compliant contact with the key of this one acts.
     fn is_held_by_spring(&self, contact: &Contact<S>, acts: impl Fn(usize) -> bool) -> bool {
         let find = || self.contacts.binary_search_by_key(&contact.key, |c| c.key);
-        self.memory[contact.law as usize].compliant
-            && find().is_ok_and(acts)
+        self.memory[contact.law as usize].compliant && find().is_ok_and(acts)
     }
 
     /// Merges contacts that close in the step into the network; contacts that already exist get the

@@ -34,7 +34,9 @@ impl Neighbours {
         for (near, moves) in near.iter_mut().zip(&moves) {
             near.sort_unstable();
             near.dedup();
-            starts.push(starts[starts.len() - 1] + if *moves { degrees_of_freedom::<S>() } else { 0 });
+            starts.push(
+                starts[starts.len() - 1] + if *moves { degrees_of_freedom::<S>() } else { 0 },
+            );
         }
         Self { starts, near }
     }

@@ -112,17 +112,6 @@ impl<'a, S: Space> Balance<'a, S> {
         of(0) - of(1)
     }
 
-    /// Returns the normal velocity of a contact by a unit impulse along its normal (1/kg).
-    pub fn response(&self, form: &ContactForm<S>) -> f64 {
-        let of = |side: usize| {
-            let n = &form.normal;
-            let moment = S::moment(&form.arms[side], n);
-            let (v, w) = self.masses[form.bodies[side] as usize].apply(n, &moment);
-            n.dot(&v) + moment.dot(&w)
-        };
-        of(0) + of(1)
-    }
-
     /// Returns the relative spin of a contact's bodies.
     fn relative_spin(&self, form: &ContactForm<S>, motions: &[Motion<S>]) -> S::Spin {
         let [a, b] = form.bodies.map(|b| motions[b as usize].1);
@@ -217,7 +206,10 @@ impl<'a, S: Space> Balance<'a, S> {
         for body in (0..self.bodies()).filter(|b| self.pattern.moves(*b)) {
             let first = self.pattern.start(body);
             let own = &residual[first..first + degrees_of_freedom::<S>()];
-            let (p, moment) = (S::Vector::from_slice(own), S::Spin::from_slice(&own[S::D..]));
+            let (p, moment) = (
+                S::Vector::from_slice(own),
+                S::Spin::from_slice(&own[S::D..]),
+            );
             let (v, w) = self.masses[body as usize].apply(&p, &moment);
             sum += p.dot(&v) + moment.dot(&w);
         }
@@ -263,10 +255,7 @@ impl<'a, S: Space> Balance<'a, S> {
 
     /// Returns the impulses of the contacts and the moments of the bonds, `None` where no body
     /// moves.
-    pub fn impulses(
-        &self,
-        at: &Evaluated<S>,
-    ) -> (Vec<Option<S::Vector>>, Vec<Option<S::Spin>>) {
+    pub fn impulses(&self, at: &Evaluated<S>) -> (Vec<Option<S::Vector>>, Vec<Option<S::Spin>>) {
         let moves = |bodies: &[u32; 2]| bodies.iter().any(|b| self.pattern.moves(*b));
         let impulses = self.forms.iter().zip(&at.impulses);
         let impulses = impulses.map(|(form, p)| moves(&form.bodies).then_some(*p));

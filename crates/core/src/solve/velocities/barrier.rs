@@ -72,8 +72,6 @@ impl<S: Space> Friction<S> {
 #[derive(Clone, Copy)]
 struct Variables<S: Space> {
     normal: Excluding,
-    /// Gap of the normal law beyond w (m/s); zero but for rigid contacts at the start.
-    lag: f64,
     bond: Excluding,
     friction: Friction<S>,
 }
@@ -109,11 +107,7 @@ fn bound<S: Space>(form: &ContactForm<S>, pressed: f64) -> f64 {
 }
 
 /// Iterates from some velocities until the problem is solved.
-pub(super) fn solve<S: Space>(
-    solve: &mut Solve<S>,
-    problem: &mut Problem<S>,
-    begin: &[Motion<S>],
-) {
+pub(super) fn solve<S: Space>(solve: &mut Solve<S>, problem: &mut Problem<S>, begin: &[Motion<S>]) {
     let mut state = State::new(&solve.balance, begin);
     let mut nearest = f64::INFINITY;
     for _ in 0..ITERATIONS {
@@ -146,12 +140,9 @@ impl<S: Space> State<S> {
             let (u_n, u_t) = (form.normal.dot(&u), S::tangential(&form.normal, &u));
             let [c_n, c_t] = form.compliance;
             let mut normal = Excluding::default();
-            let mut lag = 0.0;
             if closes(form) {
                 let overlap = -(u_n + form.shift_n);
-                let c = own_or_response(balance, form);
-                normal = Excluding::begin(form.tension + overlap / c, c, mu);
-                lag = -overlap + c_n * (normal.p - form.tension) - normal.w;
+                normal = Excluding::begin(form.tension + overlap / c_n, c_n, mu);
             }
             let bond = pulls_only(form).map_or_else(Excluding::default, |e| {
                 Excluding::begin(e.a_n + e.b_n * u_n, 1.0 / e.b_n, mu)
@@ -163,13 +154,11 @@ impl<S: Space> State<S> {
             };
             if g > 0.0 {
                 let z = (u_t + form.shift_t) * -1.0;
-                let by = if c_t > 0.0 { c_t * g } else { z.norm().max(f64::MIN_POSITIVE) };
-                friction.tau = (z * (1.0 / by)).limited(0.9);
+                friction.tau = (z * (1.0 / (c_t * g))).limited(0.9);
                 friction.alpha = 2.0 * mu / (g * friction.room());
             }
             Variables {
                 normal,
-                lag,
                 bond,
                 friction,
             }
@@ -220,8 +209,7 @@ impl<S: Space> State<S> {
         let moved = balance.as_motions(&change);
         let mut changes = Vec::with_capacity(linear.len());
         let mut step = 1.0f64;
-        for ((form, x), (.., linear)) in balance.forms.iter().zip(&self.contacts).zip(&linear)
-        {
+        for ((form, x), (.., linear)) in balance.forms.iter().zip(&self.contacts).zip(&linear) {
             let du = balance.relative(form, &moved);
             let change = change_of(form, x, linear, &du, mu);
             step = step.min(x.room_for(form, &change));
@@ -245,21 +233,22 @@ fn first_barrier<S: Space>(balance: &Balance<S>, begin: &[Motion<S>]) -> f64 {
     for form in balance.forms.iter().filter(|form| closes(form)) {
         let u_n = form.normal.dot(&balance.relative(form, begin));
         let overlap = form.compliance[0] * form.tension - (u_n + form.shift_n);
-        let c = own_or_response(balance, form);
-        let energy = [overlap * overlap / c, 1.0];
+        let energy = [overlap * overlap / form.compliance[0], 1.0];
         if overlap > 0.0 {
             (0..2).for_each(|k| overlapping[k] += energy[k]);
         }
         (0..2).for_each(|k| all[k] += energy[k]);
     }
-    let [sum, count] = if overlapping[0] > 0.0 { overlapping } else { all };
-    if sum > 0.0 { sum / count } else { LEAST_BARRIER }
-}
-
-/// Returns the normal compliance of a contact, or the response of the bodies of a rigid one (1/kg).
-fn own_or_response<S: Space>(balance: &Balance<S>, form: &ContactForm<S>) -> f64 {
-    let c_n = form.compliance[0];
-    if c_n > 0.0 { c_n } else { balance.response(form) }
+    let [sum, count] = if overlapping[0] > 0.0 {
+        overlapping
+    } else {
+        all
+    };
+    if sum > 0.0 {
+        sum / count
+    } else {
+        LEAST_BARRIER
+    }
 }
 
 /// Linearises a contact: impulse at unchanged velocity, its slope, and the changes of variables.
@@ -284,7 +273,7 @@ fn linearise<S: Space>(
     if closes(form) {
         let Excluding { p, w } = x.normal;
         let over = 1.0 / (w + c_n * p);
-        changes.p = [(mu - p * w - p * x.lag) * over, p * over];
+        changes.p = [(mu - p * w) * over, p * over];
         p_n += p + changes.p[0];
         slope.normal += changes.p[1];
     }
@@ -294,7 +283,11 @@ fn linearise<S: Space>(
         let (length, a) = (tau.norm(), 0.5 * g * x.friction.room());
         let slides = alpha * g / a * length * length;
         let (across, along) = (c_t * g + alpha, c_t * g + alpha + slides);
-        slope.slip = if length > 0.0 { tau * (1.0 / length) } else { S::Tangent::zero() };
+        slope.slip = if length > 0.0 {
+            tau * (1.0 / length)
+        } else {
+            S::Tangent::zero()
+        };
         (slope.across, slope.along) = (g / across, g / along);
         let y = u_t + form.shift_t + tau * (c_t * g);
         let right = y + tau * (mu / a);
@@ -334,7 +327,6 @@ fn change_of<S: Space>(
     let (du_n, du_t) = (form.normal.dot(du), S::tangential(&form.normal, du));
     let mut out = Variables {
         normal: Excluding::default(),
-        lag: 0.0,
         bond: Excluding::default(),
         friction: Friction {
             tau: S::Tangent::zero(),
@@ -345,9 +337,8 @@ fn change_of<S: Space>(
         let dp = linear.p[0] - linear.p[1] * du_n;
         out.normal = Excluding {
             p: dp,
-            w: du_n + form.compliance[0] * dp + x.lag,
+            w: du_n + form.compliance[0] * dp,
         };
-        out.lag = -x.lag;
     }
     if let Some(e) = pulls_only(form) {
         let dp = linear.bond[0] + linear.bond[1] * du_n;
@@ -397,7 +388,6 @@ impl<S: Space> Variables<S> {
     fn add(&mut self, change: &Self, step: f64) {
         self.normal.p += step * change.normal.p;
         self.normal.w += step * change.normal.w;
-        self.lag += step * change.lag;
         self.bond.p += step * change.bond.p;
         self.bond.w += step * change.bond.w;
         self.friction.tau += change.friction.tau * step;

@@ -19,11 +19,7 @@ const FINAL_DECREASE: f64 = 0.7;
 const FINAL_ITERATIONS: u32 = 8;
 
 /// Iterates from some velocities until the problem is solved, or no progress is made.
-pub(super) fn solve<S: Space>(
-    solve: &mut Solve<S>,
-    problem: &mut Problem<S>,
-    begin: &[Motion<S>],
-) {
+pub(super) fn solve<S: Space>(solve: &mut Solve<S>, problem: &mut Problem<S>, begin: &[Motion<S>]) {
     let mut at = solve.balance.evaluate(begin.to_vec());
     let mut short = 0;
     for _ in 0..ITERATIONS {
