@@ -4,7 +4,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::solve::form::Mobility;
 
 /// Pairs of bodies in contact.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::solve) struct Neighbours {
     /// First row of each body; immovable bodies have no rows.
     pub starts: Vec<usize>,
@@ -44,15 +44,6 @@ impl Neighbours {
     /// Returns the total number of degrees of freedom.
     pub fn rows(&self) -> usize {
         self.starts[self.near.len()]
-    }
-
-    /// Returns whether the same bodies move as in `other`, and all neighbours there are neighbours
-    /// here.
-    pub fn contains(&self, other: &Self) -> bool {
-        let all = |(near, others): (&Vec<u32>, &Vec<u32>)| {
-            others.iter().all(|b| near.binary_search(b).is_ok())
-        };
-        self.starts == other.starts && self.near.iter().zip(&other.near).all(all)
     }
 
     /// Whether a body moves.

@@ -18,7 +18,8 @@ const KRYLOV: krylov::Limits = krylov::Limits {
 };
 
 /// Places of the entries, by columns, and the order of elimination. Both are kept from step to step
-/// while no new neighbours meet.
+/// while the neighbours are the same; they follow from these alone, so that a run that is resumed
+/// has the same bits.
 #[derive(Clone, Debug, Default)]
 pub(in crate::solve) struct Pattern {
     neighbours: Neighbours,
@@ -29,9 +30,9 @@ pub(in crate::solve) struct Pattern {
 }
 
 impl Pattern {
-    /// Returns this pattern if it has room for these neighbours, otherwise theirs.
+    /// Returns this pattern if it is of these neighbours, otherwise theirs.
     pub fn for_neighbours<S: Space>(self, neighbours: Neighbours) -> Self {
-        if self.neighbours.contains(&neighbours) {
+        if self.neighbours == neighbours {
             return self;
         }
         let size = degrees_of_freedom::<S>();
