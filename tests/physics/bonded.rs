@@ -113,6 +113,7 @@ fn by<S: Space>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec
         &forms,
         &[],
         &options,
+        None,
         &mut AutoState::default(),
     );
     let name = method.name();

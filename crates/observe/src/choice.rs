@@ -96,7 +96,7 @@ impl SolverStats {
         }
         if self.velocities_tried > 0 {
             return format!(
-                "newton in velocities was tried in {} of {steps} steps, where sweeps would have taken longer, and converged in {}; sweeps solved the other steps",
+                "newton in velocities was tried in {} of {steps} steps, after sweeps had not converged in its time, and converged in {}; sweeps solved the other steps",
                 self.velocities_tried, self.velocities_ended
             );
         }

@@ -210,6 +210,7 @@ fn every_method<S: Space>(answer: Answer, moves: Moves, central: bool, moment: b
             &forms,
             &moments,
             &options,
+            None,
             &mut AutoState::default(),
         );
         let case = format!("{answer:?} {moves:?} {central} {name}");

@@ -7,7 +7,8 @@
 //! Newton until one of them converges. For a hyperstatic set Newton starts ten times later. If
 //! neither helped, they start later in the following steps, until one of them helps again. All
 //! lengths follow from problem sizes, not from timings, so that a case takes the same path on any
-//! machine.
+//! machine. Where all contacts are springs, Newton in the velocities of the bodies takes the place
+//! of both ([`super::velocities`]).
 
 use super::chosen::{Attempt, SolvePath, hyperstaticity};
 use super::context::{AutoState, SolveContext};
@@ -50,26 +51,31 @@ const NEWTON: u32 = 40;
 /// because of slow propagation, as in a column, not for lack of rank. Above it the interior point
 /// failed in 7 attempts of 8.
 const DETERMINED: f64 = 0.95;
+/// Largest number of iterations of Newton in velocities, and the number of iterations in whose time
+/// sweeps have to be done for it to be tried.
+const ATTEMPT: u32 = 80;
+const BRIEF: f64 = 5.0;
 /// Number of times that a factorising method is called with a smaller tolerance, in general and
 /// where contacts act on systems.
 const ATTEMPTS: [u32; 2] = [4, 20];
 /// Maximum number of interior-point steps.
 const INTERIOR: u32 = 120;
 
-/// Solves the problem in place, starting from the impulses of its forms.
+/// Solves the problem in place, starting from the impulses of its forms; Newton in velocities from
+/// `start`, without one from the velocities by these impulses.
 pub fn solve<S: Space>(
     problem: &mut Problem<S>,
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
     options: &SolverOptions,
-    start: Start<S>,
+    start: Option<Start<S>>,
     auto_state: &mut AutoState,
 ) -> Report {
     let context = SolveContext {
         forms,
         moments,
         options,
-        start: Some(start),
+        start,
     };
     let mut report = match options.method {
         Method::Nlgs => context.sweep(problem, options.max_iterations),
@@ -108,7 +114,10 @@ impl<S: Space> SolveContext<'_, S> {
             && !report.converged
             && let Some(solved) = self.solve_in_velocities(problem, self.options.max_iterations)
         {
-            return solved;
+            report.add(&solved);
+            if report.converged {
+                return report;
+            }
         }
         let (tolerance, most) = (self.options.tolerance, self.options.max_iterations);
         let attempts = ATTEMPTS[usize::from(!problem.of_systems.is_empty())];
@@ -210,7 +219,8 @@ impl<S: Space> SolveContext<'_, S> {
                 };
             }
         }
-        if self.velocities_serve(problem)
+        if problem.contacts() > 0
+            && self.velocities_serve(problem)
             && let Some(cost) = velocities::sweeps_per_iteration(problem)
         {
             return self.sweeps_or_velocities(problem, cost, auto_state);
@@ -282,16 +292,21 @@ impl<S: Space> SolveContext<'_, S> {
         auto_state: &mut AutoState,
     ) -> Report {
         let most = self.options.max_iterations;
+        // A solve that is meant to be brief, or one that may not take the time of Newton.
+        if f64::from(most) < BRIEF * cost {
+            return self.sweep_accelerated(problem, most);
+        }
         let sweeps = (cost * auto_state.velocities.before()) as u32;
-        let mut report = self.sweep_accelerated(problem, most.min(sweeps));
-        let left = most - report.iterations;
-        if report.converged || report.unbounded || left == 0 {
+        let mut report = self.sweep_accelerated(problem, sweeps.min(most / 2));
+        if report.converged {
             auto_state.velocities.sweeps_sufficed();
+        }
+        if report.converged || report.unbounded {
             return report;
         }
         let after = report.iterations;
         let mut newton = Attempt::No;
-        if let Some(solved) = self.solve_in_velocities(problem, left) {
+        if let Some(solved) = self.solve_in_velocities(problem, ATTEMPT) {
             report.add(&solved);
             newton = if solved.converged {
                 Attempt::Ended

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// State that `auto` carries from step to step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AutoState {
-    /// Factor on the number of iterations before Newton.
+    /// Factor on the number of iterations before Newton on W.
     pub(super) patience: f64,
     /// Whether the interior point converged in the last step in which Newton failed; it is then
     /// tried first.
@@ -78,7 +78,7 @@ pub(super) struct SolveContext<'a, S: Space> {
     pub(super) forms: &'a [ContactForm<S>],
     pub(super) moments: &'a [MomentForm<S>],
     pub(super) options: &'a SolverOptions,
-    /// Velocities before the step; `None` for a part of its bodies.
+    /// Velocities before the step, if known.
     pub(super) start: Option<Start<'a, S>>,
 }
 
@@ -133,7 +133,6 @@ impl<S: Space> SolveContext<'_, S> {
         problem: &mut Problem<S>,
         most: u32,
     ) -> Option<Report> {
-        let start = self.start.as_ref()?;
         if !self.velocities_serve(problem) {
             return None;
         }
@@ -143,7 +142,13 @@ impl<S: Space> SolveContext<'_, S> {
         };
         Some(Report {
             used: Method::Newton,
-            ..velocities::solve(problem, self.forms, self.moments, start, &options)
+            ..velocities::solve(
+                problem,
+                self.forms,
+                self.moments,
+                self.start.as_ref(),
+                &options,
+            )
         })
     }
 

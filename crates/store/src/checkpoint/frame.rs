@@ -45,7 +45,7 @@ const BODY: usize = 80;
 impl Frame {
     /// Version of the format of identities and states that this program writes. It increases by one
     /// with every change of their content.
-    pub const FORMAT: u32 = 20;
+    pub const FORMAT: u32 = 21;
 
     /// First bytes of a frame. They are zero until all other bytes are on disk.
     pub const SEAL: usize = MAGIC.len();

@@ -100,17 +100,22 @@ pub fn find_missed<S: Space>(
     acts: impl Fn(usize) -> bool,
 ) -> Vec<Contact<S>> {
     let mut closing = find_closing(network, scene, motion, SearchStage::After);
-    let found = closing.contacts.len();
-    closing
-        .contacts
-        .retain(|c| !network.is_held_by_spring(c, &acts));
+    let mut held: Vec<(u32, u32)> = Vec::new();
+    closing.contacts.retain(|c| {
+        let spring = network.is_held_by_spring(c, &acts);
+        held.extend(spring.then(|| c.key.pair()));
+        !spring
+    });
     if !closing.contacts.is_empty() {
         network.step_size.repeated_solves += 1;
         return closing.contacts;
     }
-    if found > 0 {
-        let springs = find_closing(network, scene, motion, SearchStage::Report);
-        closing.passing.extend(springs.passing);
+    if !held.is_empty() {
+        held.sort_unstable();
+        let passing = find_closing(network, scene, motion, SearchStage::Report).passing;
+        let springs = passing.into_iter();
+        let springs = springs.filter(|pair| held.binary_search(&pair.names).is_ok());
+        closing.passing.extend(springs);
         closing.passing.sort_by_key(|pair| pair.names);
         closing.passing.dedup_by_key(|pair| pair.names);
     }

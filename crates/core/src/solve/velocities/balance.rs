@@ -85,18 +85,21 @@ impl<'a, S: Space> Balance<'a, S> {
         self.pattern.moves(body) && self.masses[body as usize].along(component) > 0.0
     }
 
-    /// Returns the velocities to start from; those of imposed degrees of freedom are given.
-    pub fn start(&self, problem: &Problem<S>, start: &Start<S>) -> Vec<Motion<S>> {
+    /// Returns the velocities to start from, without any those by the impulses of the problem; those
+    /// of imposed degrees of freedom are given.
+    pub fn start(&self, problem: &Problem<S>, start: Option<&Start<S>>) -> Vec<Motion<S>> {
+        let of = |b: usize| match start {
+            Some(start) => (start.velocity[b], start.spin[b]),
+            None => problem.velocity(b),
+        };
         let mut motions = problem.free.clone();
         for (b, motion) in motions.iter_mut().enumerate() {
-            for k in 0..degrees_of_freedom::<S>() {
-                if !self.is_free(b as u32, k) {
-                    continue;
-                }
+            let (velocity, spin) = of(b);
+            for k in (0..degrees_of_freedom::<S>()).filter(|k| self.is_free(b as u32, *k)) {
                 if k < S::D {
-                    motion.0[k] = start.velocity[b][k];
+                    motion.0[k] = velocity[k];
                 } else {
-                    motion.1[k - S::D] = start.spin[b][k - S::D];
+                    motion.1[k - S::D] = spin[k - S::D];
                 }
             }
         }
@@ -243,13 +246,25 @@ impl<'a, S: Space> Balance<'a, S> {
         (0..self.bodies()).map(of).collect()
     }
 
+    /// Returns the weights by which impulses and moments become comparable: 1/sqrt(M), as in
+    /// [`Self::size`]; 1 for an imposed degree of freedom.
+    fn weights(&self) -> Vec<f64> {
+        let mut out = vec![1.0; self.pattern.len()];
+        for body in (0..self.bodies()).filter(|b| self.pattern.moves(*b)) {
+            for k in (0..degrees_of_freedom::<S>()).filter(|k| self.is_free(body, *k)) {
+                out[self.pattern.start(body) + k] = self.masses[body as usize].along(k).sqrt();
+            }
+        }
+        out
+    }
+
     /// Returns the change of velocities that removes a residual, with slopes of the contacts; `None`
     /// where the matrix cannot be factorised.
     pub fn direction(&mut self, residual: &[f64], slopes: &[Slope<S>]) -> Option<Vec<f64>> {
         let values = Values::new(self, slopes);
         let factor = values.factor(&mut self.pattern)?;
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
-        let change = values.solve(&self.pattern, &factor, &right);
+        let change = values.solve(&self.pattern, &factor, &right, &self.weights())?;
         change.iter().all(|x| x.is_finite()).then_some(change)
     }
 

@@ -20,7 +20,11 @@ use crate::solve::form::{ContactForm, Elastic};
 use crate::solve::problem::Problem;
 
 /// Largest number of iterations.
-const ITERATIONS: u32 = 100;
+const ITERATIONS: u32 = 60;
+/// A step shorter than this share is short; after this many in turn the attempt ends.
+const SHORT: (f64, u32) = (0.02, 5);
+/// Share of the whole step from which the next iterate may be near the solution.
+const WHOLE: f64 = 0.5;
 /// Barrier parameter over the mean product.
 const TARGET: f64 = 0.2;
 /// Share of the way to the nearest bound.
@@ -108,21 +112,26 @@ fn bound<S: Space>(form: &ContactForm<S>, pressed: f64) -> f64 {
 
 /// Iterates from some velocities until the problem is solved.
 pub(super) fn solve<S: Space>(solve: &mut Solve<S>, problem: &mut Problem<S>, begin: &[Motion<S>]) {
-    let mut state = State::new(&solve.balance, begin);
-    let mut nearest = f64::INFINITY;
+    let at = solve.balance.evaluate(begin.to_vec());
+    let mut state = State::new(&solve.balance, begin, at.size);
+    let (mut nearest, mut short) = (at.size, 0);
     for _ in 0..ITERATIONS {
+        solve.iterations += 1;
+        let Some(step) = state.advance(&mut solve.balance) else {
+            return;
+        };
+        short = if step < SHORT.0 { short + 1 } else { 0 };
         let at = solve.balance.evaluate(state.motions.clone());
-        if at.size < NEARER * nearest {
+        if step > WHOLE && at.size < NEARER * nearest {
             nearest = at.size;
             solve.measure(problem, &at);
             if !solve.ended() {
                 newton::finish(solve, problem, at);
             }
         }
-        if solve.ended() || !state.advance(&mut solve.balance) {
+        if solve.ended() || short == SHORT.1 {
             return;
         }
-        solve.iterations += 1;
     }
 }
 
@@ -133,8 +142,9 @@ struct State<S: Space> {
 }
 
 impl<S: Space> State<S> {
-    fn new(balance: &Balance<S>, begin: &[Motion<S>]) -> Self {
-        let mu = first_barrier(balance, begin);
+    /// Begins at velocities with this norm of the residual.
+    fn new(balance: &Balance<S>, begin: &[Motion<S>], residual: f64) -> Self {
+        let mu = first_barrier(balance, begin, residual);
         let contact = |form: &ContactForm<S>| {
             let u = balance.relative(form, begin);
             let (u_n, u_t) = (form.normal.dot(&u), S::tangential(&form.normal, &u));
@@ -191,8 +201,8 @@ impl<S: Space> State<S> {
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
-    /// Does one iteration; returns whether it was possible.
-    fn advance(&mut self, balance: &mut Balance<S>) -> bool {
+    /// Does one iteration; returns the share of the whole step, `None` where it is not possible.
+    fn advance(&mut self, balance: &mut Balance<S>) -> Option<f64> {
         let mu = TARGET * self.mean_product(balance);
         let linear: Vec<_> = balance
             .forms
@@ -203,9 +213,7 @@ impl<S: Space> State<S> {
         let impulses: Vec<S::Vector> = linear.iter().map(|(p, ..)| *p).collect();
         let slopes: Vec<Slope<S>> = linear.iter().map(|(_, slope, _)| *slope).collect();
         let residual = balance.residual(&self.motions, &impulses);
-        let Some(change) = balance.direction(&residual, &slopes) else {
-            return false;
-        };
+        let change = balance.direction(&residual, &slopes)?;
         let moved = balance.as_motions(&change);
         let mut changes = Vec::with_capacity(linear.len());
         let mut step = 1.0f64;
@@ -215,40 +223,43 @@ impl<S: Space> State<S> {
             step = step.min(x.room_for(form, &change));
             changes.push(change);
         }
-        if !(step > 0.0) {
-            return false;
+        if step.is_nan() || step <= 0.0 {
+            return None;
         }
         self.motions = balance.moved(&self.motions, &change, step);
         for (x, change) in self.contacts.iter_mut().zip(&changes) {
             x.add(change, step);
         }
-        true
+        Some(step)
     }
 }
 
-/// Returns the barrier parameter of the first iteration: the mean energy of the contacts that
-/// overlap at the start, or of all where none does.
-fn first_barrier<S: Space>(balance: &Balance<S>, begin: &[Motion<S>]) -> f64 {
-    let (mut overlapping, mut all) = ([0.0; 2], [0.0; 2]);
-    for form in balance.forms.iter().filter(|form| closes(form)) {
-        let u_n = form.normal.dot(&balance.relative(form, begin));
-        let overlap = form.compliance[0] * form.tension - (u_n + form.shift_n);
-        let energy = [overlap * overlap / form.compliance[0], 1.0];
-        if overlap > 0.0 {
-            (0..2).for_each(|k| overlapping[k] += energy[k]);
-        }
-        (0..2).for_each(|k| all[k] += energy[k]);
-    }
-    let [sum, count] = if overlapping[0] > 0.0 {
-        overlapping
-    } else {
-        all
+/// Returns the barrier parameter of the first iteration: the largest of the mean energies of the
+/// overlaps and of the bonds that pull at the start, and of the part of the load that is not
+/// balanced there.
+fn first_barrier<S: Space>(balance: &Balance<S>, begin: &[Motion<S>], residual: f64) -> f64 {
+    let (mut pressed, mut pulled) = ([0.0; 2], [0.0; 2]);
+    let add = |sum: &mut [f64; 2], energy: f64| {
+        sum[0] += energy;
+        sum[1] += 1.0;
     };
-    if sum > 0.0 {
-        sum / count
-    } else {
-        LEAST_BARRIER
+    for form in balance.forms {
+        let u_n = form.normal.dot(&balance.relative(form, begin));
+        let c_n = form.compliance[0];
+        let overlap = c_n * form.tension - (u_n + form.shift_n);
+        if closes(form) && overlap > 0.0 {
+            add(&mut pressed, overlap * overlap / c_n);
+        }
+        if let Some(e) = pulls_only(form) {
+            let pull = e.a_n + e.b_n * u_n;
+            if pull > 0.0 {
+                add(&mut pulled, pull * pull / e.b_n);
+            }
+        }
     }
+    let mean = |[sum, count]: [f64; 2]| if count > 0.0 { sum / count } else { 0.0 };
+    let load = residual * residual / balance.forms.len().max(1) as f64;
+    mean(pressed).max(mean(pulled)).max(load).max(LEAST_BARRIER)
 }
 
 /// Linearises a contact: impulse at unchanged velocity, its slope, and the changes of variables.

@@ -18,17 +18,26 @@ fn add(to: &mut [f64], factor: f64, from: &[f64]) {
     to.iter_mut().zip(from).for_each(|(x, y)| *x += factor * y);
 }
 
-/// Returns x with A x = b, for A given by products and a preconditioner that is solved in place.
+/// Returns x with A x = b, for A given by products and a preconditioner that is solved in place, and
+/// the residual relative to b. Residuals are measured with a weight for each row.
 pub(super) fn solve(
     product: impl Fn(&[f64]) -> Vec<f64>,
     precondition: impl Fn(&mut [f64]),
     b: &[f64],
+    weights: &[f64],
     limits: &Limits,
-) -> Vec<f64> {
+) -> (Vec<f64>, f64) {
+    let weighted = |x: &[f64]| {
+        x.iter()
+            .zip(weights)
+            .map(|(x, w)| x * w)
+            .collect::<Vec<_>>()
+    };
     let mut x = vec![0.0; b.len()];
-    let size = dot(b, b).sqrt();
+    let b = weighted(b);
+    let size = dot(&b, &b).sqrt();
     if size == 0.0 || !size.is_finite() {
-        return x;
+        return (x, size);
     }
     let mut basis = vec![b.iter().map(|x| x / size).collect::<Vec<f64>>()];
     let mut directions: Vec<Vec<f64>> = Vec::new();
@@ -40,9 +49,10 @@ pub(super) fn solve(
         if right[k].abs() <= limits.tolerance * size {
             break;
         }
-        let mut direction = basis[k].clone();
+        let over = basis[k].iter().zip(weights).map(|(x, w)| x / w);
+        let mut direction: Vec<f64> = over.collect();
         precondition(&mut direction);
-        let mut next = product(&direction);
+        let mut next = weighted(&product(&direction));
         directions.push(direction);
         let mut column: Vec<f64> = Vec::with_capacity(k + 2);
         for q in &basis {
@@ -82,7 +92,7 @@ pub(super) fn solve(
     for (direction, weight) in directions.iter().zip(weights) {
         add(&mut x, weight, direction);
     }
-    x
+    (x, right[count].abs() / size)
 }
 
 #[cfg(test)]
@@ -106,7 +116,9 @@ mod tests {
             tolerance: 1e-14,
             products: 4,
         };
-        let x = solve(product, precondition, &product(&wanted), &limits);
+        let weights = [1.0, 10.0, 0.1, 2.0];
+        let (x, residual) = solve(product, precondition, &product(&wanted), &weights, &limits);
+        assert!(residual < 1e-13, "{residual}");
         for (x, wanted) in x.iter().zip(wanted) {
             assert!((x - wanted).abs() < 1e-13, "{x}");
         }

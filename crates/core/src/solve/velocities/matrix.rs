@@ -11,7 +11,9 @@ use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Side};
 
-/// Accuracy and largest number of products of the iteration for the Jacobian.
+/// Largest residual of a direction, and accuracy and largest number of products of the iteration
+/// for it.
+const ACCEPTED: f64 = 1e-2;
 const KRYLOV: krylov::Limits = krylov::Limits {
     tolerance: 1e-7,
     products: 80,
@@ -178,8 +180,15 @@ impl Values {
         factor
     }
 
-    /// Solves with the whole matrix, by the factor of its symmetric part.
-    pub fn solve(&self, pattern: &Pattern, factor: &Llt<usize, f64>, b: &[f64]) -> Vec<f64> {
+    /// Solves with the whole matrix, by the factor of its symmetric part, with a weight of each
+    /// row's residual; `None` where the iteration does not converge.
+    pub fn solve(
+        &self,
+        pattern: &Pattern,
+        factor: &Llt<usize, f64>,
+        b: &[f64],
+        weights: &[f64],
+    ) -> Option<Vec<f64>> {
         let precondition = |x: &mut [f64]| {
             let rows = x.len();
             let x = MatMut::from_column_major_slice_mut(x, rows, 1);
@@ -188,7 +197,7 @@ impl Values {
         if !self.coupled {
             let mut x = b.to_vec();
             precondition(&mut x);
-            return x;
+            return Some(x);
         }
         let product = |x: &[f64]| {
             let mut out = vec![0.0; x.len()];
@@ -199,7 +208,8 @@ impl Values {
             }
             out
         };
-        krylov::solve(product, precondition, b, &KRYLOV)
+        let (x, residual) = krylov::solve(product, precondition, b, weights, &KRYLOV);
+        (residual <= ACCEPTED).then_some(x)
     }
 }
 

@@ -12,9 +12,9 @@
 //!
 //! The Jacobian M + sum_c H_c K_c H_c^T is sparse: a body is coupled to its neighbours. It is
 //! symmetric but for the friction of contacts that slide, whose bound changes with the normal
-//! velocity. Its symmetric part is factorised by Cholesky, and preconditions the iteration of
-//! minimal residuals ([`krylov`]) for the whole. The cost of a solve does not grow as the inertia
-//! of bodies falls, where Gauss-Seidel takes ever more iterations.
+//! velocity. Without this change it is factorised by Cholesky, which preconditions the iteration of
+//! minimal residuals ([`krylov`]) for the whole. The cost of a solve grows little as the inertia of
+//! bodies falls, where Gauss-Seidel takes ever more iterations.
 //!
 //! [`newton`] converges in some 4 to 10 iterations from velocities near the solution. Where many
 //! contacts open, close or begin to slide at once it may fail, and [`barrier`] follows: an interior
@@ -39,13 +39,13 @@ use super::form::ContactForm;
 use super::nlgs::{self, Report, SolverOptions};
 use super::problem::Problem;
 use super::row::MomentForm;
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use balance::Balance;
 pub(super) use matrix::Pattern;
 pub(super) use patience::{Patience, sweeps_per_iteration};
 
 /// Velocities and spins of the bodies (m/s, rad/s) from which a solve starts: those before the
-/// step, near to which they are at its end.
+/// step, or of its last solve, near to which they are at its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Start<'a, S: Space> {
     /// Velocities.
@@ -62,7 +62,7 @@ pub(super) fn serves<S: Space>(
     moments: &[MomentForm<S>],
 ) -> bool {
     let turns_freely = |m: &MomentForm<S>| m.rolling == 0.0 && m.spinning == 0.0;
-    problem.systems.is_empty() && moments.iter().all(turns_freely) && forms.iter().all(yields)
+    problem.systems.is_empty() && forms.iter().all(yields) && moments.iter().all(turns_freely)
 }
 
 /// Whether the impulses of a contact are functions of its velocities.
@@ -73,22 +73,31 @@ fn yields<S: Space>(form: &ContactForm<S>) -> bool {
     never_closes || c_n > 0.0 && (c_t > 0.0 || !slides)
 }
 
-/// Solves a problem that [`serves`], at most with a number of factorisations, until the error over
+/// Solves a problem that [`serves`] accepts, at most with a number of factorisations, until the error over
 /// bodies is within the tolerance; see [`nlgs::check_convergence`].
 pub(super) fn solve<S: Space>(
     problem: &mut Problem<S>,
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
-    start: &Start<S>,
+    start: Option<&Start<S>>,
     options: &SolverOptions,
 ) -> Report {
     let mut solve = Solve::new(problem, forms, moments, options);
+    if solve.best.report.converged {
+        return solve.best.report;
+    }
     let begin = solve.balance.start(problem, start);
     newton::solve(&mut solve, problem, &begin);
     if !solve.ended() {
         barrier::solve(&mut solve, problem, &begin);
     }
-    let Solve { balance, best, .. } = solve;
+    let Solve {
+        balance,
+        mut best,
+        iterations,
+        ..
+    } = solve;
+    best.report.iterations = iterations;
     problem.velocity_pattern = balance.pattern;
     if !best.report.converged {
         problem.adopt(&best.impulses, &best.moments);
@@ -119,13 +128,16 @@ impl<'a, S: Space> Solve<'a, S> {
         moments: &'a [MomentForm<S>],
         options: &SolverOptions,
     ) -> Self {
-        let report = nlgs::check_convergence(problem, options);
+        let mut report = nlgs::check_convergence(problem, options);
+        let impulses = (0..problem.contacts()).map(|k| problem.solution(k).impulse);
+        let impulses: Vec<_> = impulses.map(Some).collect();
+        if !impulses.iter().flatten().all(S::Vector::is_finite) {
+            (report.converged, report.error) = (false, f64::INFINITY);
+        }
         Self {
             best: Best {
                 report,
-                impulses: (0..problem.contacts())
-                    .map(|k| Some(problem.solution(k).impulse))
-                    .collect(),
+                impulses,
                 moments: problem.moments().map(|m| Some(m.moment)).collect(),
             },
             balance: Balance::new(problem, forms, moments),
@@ -155,6 +167,5 @@ impl<'a, S: Space> Solve<'a, S> {
                 moments,
             };
         }
-        self.best.report.iterations = self.iterations;
     }
 }

@@ -71,7 +71,10 @@ fn step<S: Space>(
     for _ in 0..=halvings {
         let next = balance.evaluate(balance.moved(&at.motions, &change, factor));
         let enough = next.size <= (1.0 - DECREASE * factor) * at.size;
-        if best.as_ref().is_none_or(|(best, _)| next.size < best.size) {
+        if best
+            .as_ref()
+            .is_none_or(|(best, _)| best.size.is_nan() || next.size < best.size)
+        {
             best = Some((next, factor));
         }
         if enough {

@@ -10,14 +10,14 @@ use serde::{Deserialize, Serialize};
 
 /// Largest numbers of bodies of which the matrix is factorised, in 2D and 3D: some gigabytes.
 const MAX_BODIES: [usize; 2] = [200_000, 15_000];
-/// Time of an iteration in sweeps, measured (`cargo bench --bench velocities`).
+/// Time of an iteration in sweeps, measured with as many bodies (`cargo bench --bench velocities`).
 const SWEEPS: f64 = 60.0;
-/// The same by body in 3D, where the operations of a factorisation grow with the square of the
-/// number of bodies: an estimate, from the size of separators in a cube.
+const MEASURED: f64 = 1000.0;
+/// The same by body in 3D: an estimate, from the size of separators in a cube.
 const SWEEPS_PER_BODY: f64 = 0.15;
 /// Number of iterations of a solve, until one was done.
 const ITERATIONS: f64 = 5.0;
-/// Number of solves after which all sweeps are done again, although few suffice lately.
+/// Number of solves after which all sweeps are done again, although they have not sufficed lately.
 const ALL_AFTER: u32 = 16;
 /// Smallest and largest factor on the number of sweeps.
 const LIMITS: [f64; 2] = [0.05, 64.0];
@@ -29,8 +29,12 @@ pub(in crate::solve) fn sweeps_per_iteration<S: Space>(problem: &Problem<S>) -> 
     if bodies > MAX_BODIES[S::D - 2] {
         return None;
     }
-    let growing = if S::D == 2 { 0.0 } else { SWEEPS_PER_BODY };
-    Some(SWEEPS.max(growing * bodies as f64))
+    // Operations of a factorisation grow as N^1.5 in 2D and N^2 in 3D, of a sweep as N.
+    let growing = match S::D {
+        2 => SWEEPS * (bodies as f64 / MEASURED).sqrt(),
+        _ => SWEEPS_PER_BODY * bodies as f64,
+    };
+    Some(SWEEPS.max(growing))
 }
 
 /// What earlier solves say about the next one.

@@ -85,8 +85,8 @@ fn solve_with_all<S: Space>(
             detect::report_passing(network, &scene, &motion);
             return Ok(());
         }
-        let steps = &s.workspace.solved.contact_steps;
-        let acts = |k: usize| steps[k].solution.impulse != S::Vector::zero();
+        let (steps, forms) = (&s.workspace.solved.contact_steps, &s.workspace.forms);
+        let acts = |k: usize| steps[k].solution.unilateral_n + forms[k].tension > 0.0;
         let found = detect::find_missed(network, &scene, &motion, acts);
         if found.is_empty() {
             return Ok(());

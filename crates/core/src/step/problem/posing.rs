@@ -37,10 +37,10 @@ pub(super) fn solve_contacts<S: Space>(
                 &s.workspace.forms,
                 &s.workspace.moments,
                 options,
-                solve::Start {
+                Some(solve::Start {
                     velocity: &s.state.bodies.velocity,
                     spin: &s.state.bodies.spin,
-                },
+                }),
                 &mut s.state.auto_state,
             );
             report.solver.add(&solved);
