@@ -54,10 +54,11 @@ fn a_spring_that_closes_by_an_impact_of_the_step_pushes_in_it() {
     assert_eq!(s.state.network.step_size.passed, 0);
 }
 
-/// A disk that slides around a drum by 0.4 of its radius a step stays within it, although the normal
-/// of its spring turns in each step. The spring of a line contact, k = pi/4 E* (N/m^2; E* with the
-/// moduli of both bodies), overlaps by m v^2 / (R k) on the path with the radius R = 0.45 m, up to
-/// twice as much while the overlap oscillates.
+/// A disk that slides around a drum by 0.4 of its radius a step stays within it, although the
+/// normal of its spring turns in each step. The spring of a line contact, k = pi/4 E* (N/m^2; E*
+/// with the moduli of both bodies), overlaps by m v^2 / (R k) on the path with the radius R = 0.45
+/// m. At the end of a step, which is straight, the disk is beyond the path by at most
+/// (v h)^2/(2 R).
 #[test]
 fn a_spring_turns_with_the_wall_of_a_drum() {
     let mut s: Simulation<Dim2> = built_with_alert(
@@ -80,8 +81,12 @@ fn a_spring_turns_with_the_wall_of_a_drum() {
     let stiffness = 0.25 * PI * MODULUS;
     let pressed = s.state.bodies.mass[0] * 200.0f64.powi(2) / (0.45 * stiffness);
     let mean = sum / 200.0;
-    assert!((mean / pressed - 1.0).abs() < 0.05, "{mean:e} {pressed:e}");
-    assert!(deepest < 2.1 * pressed, "{deepest:e} {pressed:e}");
+    let beyond = (200.0f64 * 1e-4).powi(2) / (2.0 * 0.45);
+    assert!(
+        (pressed..pressed + beyond).contains(&mean),
+        "{mean:e} {pressed:e}"
+    );
+    assert!(deepest < 0.25 * 0.05, "{deepest:e}");
     let kept = s.state.bodies.energy_of(0) / energy;
     // The rest is in the spring (0.2 %) and lost by time integration.
     assert!(kept > 0.99 && kept < 1.0, "{kept}");

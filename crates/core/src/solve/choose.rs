@@ -283,8 +283,8 @@ impl<S: Space> SolveContext<'_, S> {
     }
 
     /// Solves a problem of contacts that yield: by Gauss-Seidel, by Newton in velocities where that
-    /// takes longer, and where Newton fails by Gauss-Seidel to the end. An iteration of Newton takes
-    /// the time of `cost` sweeps.
+    /// takes longer, and where Newton fails by Gauss-Seidel to the end. An iteration of Newton
+    /// takes the time of `cost` sweeps.
     fn sweeps_or_velocities(
         &self,
         problem: &mut Problem<S>,

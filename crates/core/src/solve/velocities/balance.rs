@@ -85,8 +85,8 @@ impl<'a, S: Space> Balance<'a, S> {
         self.pattern.moves(body) && self.masses[body as usize].along(component) > 0.0
     }
 
-    /// Returns the velocities to start from, without any those by the impulses of the problem; those
-    /// of imposed degrees of freedom are given.
+    /// Returns the velocities to start from, without any those by the impulses of the problem;
+    /// those of imposed degrees of freedom are given.
     pub fn start(&self, problem: &Problem<S>, start: Option<&Start<S>>) -> Vec<Motion<S>> {
         let of = |b: usize| match start {
             Some(start) => (start.velocity[b], start.spin[b]),
@@ -258,8 +258,8 @@ impl<'a, S: Space> Balance<'a, S> {
         out
     }
 
-    /// Returns the change of velocities that removes a residual, with slopes of the contacts; `None`
-    /// where the matrix cannot be factorised.
+    /// Returns the change of velocities that removes a residual, with slopes of the contacts;
+    /// `None` where it is not found.
     pub fn direction(&mut self, residual: &[f64], slopes: &[Slope<S>]) -> Option<Vec<f64>> {
         let values = Values::new(self, slopes);
         let factor = values.factor(&mut self.pattern)?;

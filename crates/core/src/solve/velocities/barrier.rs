@@ -2,9 +2,9 @@
 //! as the barrier parameter mu falls.
 //!
 //! ```text
-//! P w = mu,                w = u_n + s_n + c_n (P - tension),   P, w > 0
-//! a alpha = mu,            a = g (1 - |tau|^2)/2,               p_t = g tau,  g = mu_f P + cohesion
-//! y + alpha tau = 0,       y = u_t + s_t + c_t p_t
+//! P w = mu,           w = u_n + s_n + c_n (P - tension),  P, w > 0
+//! a alpha = mu,       a = g (1 - |tau|^2)/2,  p_t = g tau,  g = mu_f P + cohesion
+//! y + alpha tau = 0,  y = u_t + s_t + c_t p_t
 //! ```
 //!
 //! and likewise along the normal of bonds that act in tension only. Each iteration linearises these
@@ -23,14 +23,14 @@ use crate::solve::problem::Problem;
 const ITERATIONS: u32 = 60;
 /// A step shorter than this share is short; after this many in turn the attempt ends.
 const SHORT: (f64, u32) = (0.02, 5);
-/// Share of the whole step from which the next iterate may be near the solution.
-const WHOLE: f64 = 0.5;
 /// Barrier parameter over the mean product.
 const TARGET: f64 = 0.2;
 /// Share of the way to the nearest bound.
 const TO_BOUND: f64 = 0.995;
 /// Smallest share of the bound that friction keeps free: of the order of rounding.
 const LEAST_ROOM: f64 = 1e-15;
+/// Smallest first barrier parameter over the mean energy of the load.
+const FROM_LOAD: f64 = 1e-3;
 /// Barrier parameter of a problem at rest (J).
 const LEAST_BARRIER: f64 = 1e-200;
 /// Ratio of the residual of the laws to that at the last attempt of Newton at which Newton is tried
@@ -114,7 +114,7 @@ fn bound<S: Space>(form: &ContactForm<S>, pressed: f64) -> f64 {
 pub(super) fn solve<S: Space>(solve: &mut Solve<S>, problem: &mut Problem<S>, begin: &[Motion<S>]) {
     let at = solve.balance.evaluate(begin.to_vec());
     let mut state = State::new(&solve.balance, begin, at.size);
-    let (mut nearest, mut short) = (at.size, 0);
+    let (mut nearest, mut short) = (f64::INFINITY, 0);
     for _ in 0..ITERATIONS {
         solve.iterations += 1;
         let Some(step) = state.advance(&mut solve.balance) else {
@@ -122,7 +122,7 @@ pub(super) fn solve<S: Space>(solve: &mut Solve<S>, problem: &mut Problem<S>, be
         };
         short = if step < SHORT.0 { short + 1 } else { 0 };
         let at = solve.balance.evaluate(state.motions.clone());
-        if step > WHOLE && at.size < NEARER * nearest {
+        if at.size < NEARER * nearest {
             nearest = at.size;
             solve.measure(problem, &at);
             if !solve.ended() {
@@ -234,32 +234,23 @@ impl<S: Space> State<S> {
     }
 }
 
-/// Returns the barrier parameter of the first iteration: the largest of the mean energies of the
-/// overlaps and of the bonds that pull at the start, and of the part of the load that is not
-/// balanced there.
+/// Returns the barrier parameter of the first iteration: the mean energy of the contacts that
+/// overlap at the start, or a share of that of the load that is not balanced there, where contacts
+/// carry less.
 fn first_barrier<S: Space>(balance: &Balance<S>, begin: &[Motion<S>], residual: f64) -> f64 {
-    let (mut pressed, mut pulled) = ([0.0; 2], [0.0; 2]);
-    let add = |sum: &mut [f64; 2], energy: f64| {
-        sum[0] += energy;
-        sum[1] += 1.0;
-    };
-    for form in balance.forms {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for form in balance.forms.iter().filter(|form| closes(form)) {
         let u_n = form.normal.dot(&balance.relative(form, begin));
         let c_n = form.compliance[0];
         let overlap = c_n * form.tension - (u_n + form.shift_n);
-        if closes(form) && overlap > 0.0 {
-            add(&mut pressed, overlap * overlap / c_n);
-        }
-        if let Some(e) = pulls_only(form) {
-            let pull = e.a_n + e.b_n * u_n;
-            if pull > 0.0 {
-                add(&mut pulled, pull * pull / e.b_n);
-            }
+        if overlap > 0.0 {
+            sum += overlap * overlap / c_n;
+            count += 1.0;
         }
     }
-    let mean = |[sum, count]: [f64; 2]| if count > 0.0 { sum / count } else { 0.0 };
+    let pressed = if count > 0.0 { sum / count } else { 0.0 };
     let load = residual * residual / balance.forms.len().max(1) as f64;
-    mean(pressed).max(mean(pulled)).max(load).max(LEAST_BARRIER)
+    pressed.max(FROM_LOAD * load).max(LEAST_BARRIER)
 }
 
 /// Linearises a contact: impulse at unchanged velocity, its slope, and the changes of variables.

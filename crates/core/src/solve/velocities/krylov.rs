@@ -18,8 +18,8 @@ fn add(to: &mut [f64], factor: f64, from: &[f64]) {
     to.iter_mut().zip(from).for_each(|(x, y)| *x += factor * y);
 }
 
-/// Returns x with A x = b, for A given by products and a preconditioner that is solved in place, and
-/// the residual relative to b. Residuals are measured with a weight for each row.
+/// Returns x with A x = b, for A given by products and a preconditioner that is solved in place,
+/// and the residual relative to b. Residuals are measured with a weight for each row.
 pub(super) fn solve(
     product: impl Fn(&[f64]) -> Vec<f64>,
     precondition: impl Fn(&mut [f64]),

@@ -73,8 +73,8 @@ fn yields<S: Space>(form: &ContactForm<S>) -> bool {
     never_closes || c_n > 0.0 && (c_t > 0.0 || !slides)
 }
 
-/// Solves a problem that [`serves`] accepts, at most with a number of factorisations, until the error over
-/// bodies is within the tolerance; see [`nlgs::check_convergence`].
+/// Solves a problem that [`serves`] accepts, at most with a number of factorisations, until the
+/// error over bodies is within the tolerance; see [`nlgs::check_convergence`].
 pub(super) fn solve<S: Space>(
     problem: &mut Problem<S>,
     forms: &[ContactForm<S>],
