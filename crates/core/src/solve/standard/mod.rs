@@ -30,7 +30,7 @@ pub(super) use pattern::{Neighbours, degrees_of_freedom};
 use bodies::{Axis, BodyOperator, Motions, Unknown};
 
 /// Impulses of the contacts, and moments; `None` between immovable bodies.
-type ImpulsesAndMoments<S> = (
+pub(super) type ImpulsesAndMoments<S> = (
     Vec<Option<<S as Space>::Vector>>,
     Vec<Option<<S as Space>::Spin>>,
 );

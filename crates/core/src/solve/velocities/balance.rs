@@ -7,7 +7,7 @@ use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, Mobility};
 use crate::solve::problem::Problem;
 use crate::solve::row::MomentForm;
-use crate::solve::standard::{Neighbours, degrees_of_freedom, mass};
+use crate::solve::standard::{ImpulsesAndMoments, Neighbours, degrees_of_freedom, mass};
 
 /// Velocity and spin of a body, or impulse and moment on it.
 pub(super) type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
@@ -270,7 +270,7 @@ impl<'a, S: Space> Balance<'a, S> {
 
     /// Returns the impulses of the contacts and the moments of the bonds, `None` where no body
     /// moves.
-    pub fn impulses(&self, at: &Evaluated<S>) -> (Vec<Option<S::Vector>>, Vec<Option<S::Spin>>) {
+    pub fn impulses(&self, at: &Evaluated<S>) -> ImpulsesAndMoments<S> {
         let moves = |bodies: &[u32; 2]| bodies.iter().any(|b| self.pattern.moves(*b));
         let impulses = self.forms.iter().zip(&at.impulses);
         let impulses = impulses.map(|(form, p)| moves(&form.bodies).then_some(*p));

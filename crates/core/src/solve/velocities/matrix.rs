@@ -145,9 +145,10 @@ impl Values {
                 continue;
             }
             let mass = balance.mass(body);
-            for q in 0..size {
+            // The matrix is symmetric: its rows are its columns.
+            for (q, column) in mass.iter().enumerate().take(size) {
                 if let Some(first) = pattern.place::<S>(body, body, q) {
-                    (0..size).for_each(|k| values.symmetric[first + k] = mass[k][q]);
+                    values.symmetric[first..first + size].copy_from_slice(&column[..size]);
                 }
             }
         }
