@@ -3,7 +3,7 @@
 //! `cargo bench --bench velocities` steps `cases/wheel_rail_fretting.ron` until its bonded layer
 //! begins to slide, and from there some further steps by each method, from the same state: with the
 //! tolerance of the case and with a balance of 1e-10, and with the inertia of all bodies multiplied
-//! by 1 to 1e-8. It prints the time of the solver in a step, its iterations (sweeps, or
+//! by 1 to 1e-8. It prints the time of the solver in a solve, its iterations (sweeps, or
 //! factorisations of Newton), and the steps that did not converge. A word selects the methods whose
 //! names contain it.
 

@@ -282,7 +282,7 @@ impl<S: Space> SolveContext<'_, S> {
         report
     }
 
-    /// Solves a problem of contacts that yield: by Gauss-Seidel, by Newton in velocities where that
+    /// Solves a problem of compliant contacts: by Gauss-Seidel, by Newton in velocities where that
     /// takes longer, and where Newton fails by Gauss-Seidel to the end. An iteration of Newton
     /// takes the time of `cost` sweeps.
     fn sweeps_or_velocities(

@@ -89,20 +89,20 @@ pub fn add_predicted<S: Space>(
 /// part of it. If there are any, the step must be solved again with them; see
 /// [`Network::merge_contacts`].
 ///
-/// A spring that pushed in the solve overlaps by its law, however far its bodies move: `acts` tells
-/// whether the contact of an index did. Such a contact is not solved for again, its pair only
+/// A spring that pushed in the solve overlaps by its law, however far its bodies move: `pushes`
+/// tells whether the contact of an index did. Such a contact is not solved for again, its pair only
 /// reported where it passes through. A spring that did not push was not known to close: the step is
 /// solved again, with the place where its bodies meet.
 pub fn find_missed<S: Space>(
     network: &mut Network<S>,
     scene: &CollisionScene<S>,
     motion: &StepMotion<S>,
-    acts: impl Fn(usize) -> bool,
+    pushes: impl Fn(usize) -> bool,
 ) -> Vec<Contact<S>> {
     let mut closing = find_closing(network, scene, motion, SearchStage::After);
     let mut held: Vec<(u32, u32)> = Vec::new();
     closing.contacts.retain(|c| {
-        let spring = network.is_held_by_spring(c, &acts);
+        let spring = network.is_held_by_spring(c, &pushes);
         held.extend(spring.then(|| c.key.pair()));
         !spring
     });
@@ -410,10 +410,10 @@ fn find_closing<S: Space>(
 }
 
 impl<S: Space> Network<S> {
-    /// Returns whether a compliant contact with the key of this one acts.
-    fn is_held_by_spring(&self, contact: &Contact<S>, acts: impl Fn(usize) -> bool) -> bool {
+    /// Returns whether a compliant contact with the key of this one pushes.
+    fn is_held_by_spring(&self, contact: &Contact<S>, pushes: impl Fn(usize) -> bool) -> bool {
         let find = || self.contacts.binary_search_by_key(&contact.key, |c| c.key);
-        self.memory[contact.law as usize].compliant && find().is_ok_and(acts)
+        self.memory[contact.law as usize].compliant && find().is_ok_and(pushes)
     }
 
     /// Merges contacts that close in the step into the network; contacts that already exist get the

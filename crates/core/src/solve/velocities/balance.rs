@@ -188,10 +188,8 @@ impl<'a, S: Space> Balance<'a, S> {
 
     /// Evaluates the contacts and F at some velocities.
     pub fn evaluate(&self, motions: Vec<Motion<S>>) -> Evaluated<S> {
-        let answers = self.forms.iter();
-        let (impulses, slopes): (Vec<_>, Vec<_>) = answers
-            .map(|form| law::answer(form, &self.relative(form, &motions)))
-            .unzip();
+        let at = |form| law::impulse(form, &self.relative(form, &motions));
+        let (impulses, slopes): (Vec<_>, Vec<_>) = self.forms.iter().map(at).unzip();
         let residual = self.residual(&motions, &impulses);
         let size = self.size(&residual);
         Evaluated {

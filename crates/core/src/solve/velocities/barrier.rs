@@ -27,8 +27,8 @@ const SHORT: (f64, u32) = (0.02, 5);
 const TARGET: f64 = 0.2;
 /// Share of the way to the nearest bound.
 const TO_BOUND: f64 = 0.995;
-/// Smallest share of the bound that friction keeps free: of the order of rounding.
-const LEAST_ROOM: f64 = 1e-15;
+/// Smallest slack of friction: of the order of rounding.
+const LEAST_SLACK: f64 = 1e-15;
 /// Smallest first barrier parameter over the mean energy of the load.
 const FROM_LOAD: f64 = 1e-3;
 /// Barrier parameter of a problem at rest (J).
@@ -37,14 +37,14 @@ const LEAST_BARRIER: f64 = 1e-200;
 /// again.
 const NEARER: f64 = 0.3;
 
-/// A variable and the one that it excludes: both positive, of product mu.
+/// A complementary pair: both positive, of product mu.
 #[derive(Clone, Copy, Default)]
-struct Excluding {
+struct ComplementaryPair {
     p: f64,
     w: f64,
 }
 
-impl Excluding {
+impl ComplementaryPair {
     /// The pair with p - w/c = `x`.
     fn begin(x: f64, c: f64, mu: f64) -> Self {
         let root = (x * x + 4.0 * mu / c).sqrt();
@@ -65,18 +65,18 @@ struct Friction<S: Space> {
 }
 
 impl<S: Space> Friction<S> {
-    /// The room 1 - |tau|^2 of friction.
-    fn room(&self) -> f64 {
+    /// The slack 1 - |tau|^2 of the bound.
+    fn slack(&self) -> f64 {
         let length = self.tau.norm();
-        ((1.0 - length) * (1.0 + length)).max(LEAST_ROOM)
+        ((1.0 - length) * (1.0 + length)).max(LEAST_SLACK)
     }
 }
 
 /// The variables of a contact.
 #[derive(Clone, Copy)]
 struct Variables<S: Space> {
-    normal: Excluding,
-    bond: Excluding,
+    normal: ComplementaryPair,
+    bond: ComplementaryPair,
     friction: Friction<S>,
 }
 
@@ -85,7 +85,7 @@ struct Variables<S: Space> {
 struct Changes<S: Space> {
     /// dP = p[0] - p[1] du_n.
     p: [f64; 2],
-    /// Likewise of the bond.
+    /// dP = bond[0] + bond[1] du_n of a bond in tension.
     bond: [f64; 2],
     /// dp_t = t - K_t du_t + pressed tau dP.
     t: S::Tangent,
@@ -149,13 +149,13 @@ impl<S: Space> State<S> {
             let u = balance.relative(form, begin);
             let (u_n, u_t) = (form.normal.dot(&u), S::tangential(&form.normal, &u));
             let [c_n, c_t] = form.compliance;
-            let mut normal = Excluding::default();
+            let mut normal = ComplementaryPair::default();
             if closes(form) {
                 let overlap = -(u_n + form.shift_n);
-                normal = Excluding::begin(form.tension + overlap / c_n, c_n, mu);
+                normal = ComplementaryPair::begin(form.tension + overlap / c_n, c_n, mu);
             }
-            let bond = pulls_only(form).map_or_else(Excluding::default, |e| {
-                Excluding::begin(e.a_n + e.b_n * u_n, 1.0 / e.b_n, mu)
+            let bond = pulls_only(form).map_or_else(ComplementaryPair::default, |e| {
+                ComplementaryPair::begin(e.a_n + e.b_n * u_n, 1.0 / e.b_n, mu)
             });
             let g = bound(form, normal.p);
             let mut friction = Friction {
@@ -165,7 +165,7 @@ impl<S: Space> State<S> {
             if g > 0.0 {
                 let z = (u_t + form.shift_t) * -1.0;
                 friction.tau = (z * (1.0 / (c_t * g))).limited(0.9);
-                friction.alpha = 2.0 * mu / (g * friction.room());
+                friction.alpha = 2.0 * mu / (g * friction.slack());
             }
             Variables {
                 normal,
@@ -195,7 +195,7 @@ impl<S: Space> State<S> {
             }
             let g = bound(form, x.normal.p);
             if g > 0.0 {
-                add(0.5 * g * x.friction.room() * x.friction.alpha);
+                add(0.5 * g * x.friction.slack() * x.friction.alpha);
             }
         }
         if count > 0.0 { sum / count } else { 0.0 }
@@ -220,7 +220,7 @@ impl<S: Space> State<S> {
         for ((form, x), (.., linear)) in balance.forms.iter().zip(&self.contacts).zip(&linear) {
             let du = balance.relative(form, &moved);
             let change = change_of(form, x, linear, &du, mu);
-            step = step.min(x.room_for(form, &change));
+            step = step.min(x.largest_step(form, &change));
             changes.push(change);
         }
         if step.is_nan() || step <= 0.0 {
@@ -273,7 +273,7 @@ fn linearise<S: Space>(
     };
     let (mut p_n, mut p_t) = (-form.tension, S::Tangent::zero());
     if closes(form) {
-        let Excluding { p, w } = x.normal;
+        let ComplementaryPair { p, w } = x.normal;
         let over = 1.0 / (w + c_n * p);
         changes.p = [(mu - p * w) * over, p * over];
         p_n += p + changes.p[0];
@@ -282,7 +282,7 @@ fn linearise<S: Space>(
     let g = bound(form, x.normal.p);
     if g > 0.0 {
         let Friction { tau, alpha } = x.friction;
-        let (length, a) = (tau.norm(), 0.5 * g * x.friction.room());
+        let (length, a) = (tau.norm(), 0.5 * g * x.friction.slack());
         let slides = alpha * g / a * length * length;
         let (across, along) = (c_t * g + alpha, c_t * g + alpha + slides);
         slope.slip = if length > 0.0 {
@@ -303,7 +303,7 @@ fn linearise<S: Space>(
         let mut stiffness = e.b_n;
         match pulls_only(form) {
             Some(e) => {
-                let Excluding { p, w } = x.bond;
+                let ComplementaryPair { p, w } = x.bond;
                 let over = 1.0 / (w + p / e.b_n);
                 changes.bond = [(mu - p * w) * over, p * over];
                 p_n -= p + changes.bond[0];
@@ -328,8 +328,8 @@ fn change_of<S: Space>(
 ) -> Variables<S> {
     let (du_n, du_t) = (form.normal.dot(du), S::tangential(&form.normal, du));
     let mut out = Variables {
-        normal: Excluding::default(),
-        bond: Excluding::default(),
+        normal: ComplementaryPair::default(),
+        bond: ComplementaryPair::default(),
         friction: Friction {
             tau: S::Tangent::zero(),
             alpha: 0.0,
@@ -337,14 +337,14 @@ fn change_of<S: Space>(
     };
     if closes(form) {
         let dp = linear.p[0] - linear.p[1] * du_n;
-        out.normal = Excluding {
+        out.normal = ComplementaryPair {
             p: dp,
             w: du_n + form.compliance[0] * dp,
         };
     }
     if let Some(e) = pulls_only(form) {
         let dp = linear.bond[0] + linear.bond[1] * du_n;
-        out.bond = Excluding {
+        out.bond = ComplementaryPair {
             p: dp,
             w: dp / e.b_n - du_n,
         };
@@ -352,9 +352,9 @@ fn change_of<S: Space>(
     let g = bound(form, x.normal.p);
     if g > 0.0 {
         let Friction { tau, alpha } = x.friction;
-        let a = 0.5 * g * x.friction.room();
-        let answer = linear.friction.apply_tangential(&du_t);
-        let dp_t = linear.t - answer + tau * (linear.pressed * out.normal.p);
+        let a = 0.5 * g * x.friction.slack();
+        let response = linear.friction.apply_tangential(&du_t);
+        let dp_t = linear.t - response + tau * (linear.pressed * out.normal.p);
         let dg = form.friction * out.normal.p;
         out.friction.tau = (dp_t - tau * dg) * (1.0 / g);
         let da = dg * a / g - g * tau.dot(&out.friction.tau);
@@ -365,7 +365,7 @@ fn change_of<S: Space>(
 
 impl<S: Space> Variables<S> {
     /// Returns the largest factor on a change with which all variables stay inside their bounds.
-    fn room_for(&self, form: &ContactForm<S>, change: &Self) -> f64 {
+    fn largest_step(&self, form: &ContactForm<S>, change: &Self) -> f64 {
         let mut step = 1.0f64;
         let mut limit = |value: f64, change: f64| {
             if change < 0.0 {
@@ -399,15 +399,15 @@ impl<S: Space> Variables<S> {
 
 /// Returns the factor on a change with which tau reaches the unit circle.
 fn to_circle<S: Space>(friction: &Friction<S>, change: &S::Tangent) -> f64 {
-    // |tau + s d|^2 = 1: s = room / (b + sqrt(b^2 + room d^2)), b = tau.d
+    // |tau + s d|^2 = 1: s = slack / (b + sqrt(b^2 + slack d^2)), b = tau.d
     let (squared, b) = (change.dot(change), friction.tau.dot(change));
     if squared == 0.0 {
         return f64::INFINITY;
     }
-    let room = friction.room();
-    let root = (b * b + room * squared).sqrt();
+    let slack = friction.slack();
+    let root = (b * b + slack * squared).sqrt();
     if b > 0.0 {
-        room / (b + root)
+        slack / (b + root)
     } else {
         (root - b) / squared
     }

@@ -72,8 +72,8 @@ pub(super) fn bond<S: Space>(e: &Elastic<S>, u_n: f64, u_t: &S::Tangent) -> (f64
     }
 }
 
-/// Impulse of a contact that yields at a relative velocity `u`, in world axes, and its slope.
-pub(super) fn answer<S: Space>(form: &ContactForm<S>, u: &S::Vector) -> (S::Vector, Slope<S>) {
+/// Impulse of a compliant contact at a relative velocity `u`, in world axes, and its slope.
+pub(super) fn impulse<S: Space>(form: &ContactForm<S>, u: &S::Vector) -> (S::Vector, Slope<S>) {
     let n = &form.normal;
     let (u_n, u_t) = (n.dot(u), S::tangential(n, u));
     let mut slope = Slope::zero();

@@ -18,7 +18,7 @@
 //!
 //! [`newton`] converges in some 4 to 10 iterations from velocities near the solution. Where many
 //! contacts open, close or begin to slide at once it may fail, and [`barrier`] follows: an interior
-//! point method, which needs some 30 iterations from any start.
+//! point method, which needs a few tens of iterations from any start.
 //!
 //! Literature: P. Alart and A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375 (Newton
 //! for contact with friction); A. M. Castro, F. N. Permenter and X. Han, IEEE Trans. Robotics 39
@@ -54,19 +54,19 @@ pub struct Start<'a, S: Space> {
     pub spin: &'a [S::Spin],
 }
 
-/// Whether this method serves a problem: rigid bodies without friction against rotation, whose
-/// contacts yield.
+/// Whether this method serves a problem: rigid bodies without friction against rotation, all
+/// of whose contacts are compliant.
 pub(super) fn serves<S: Space>(
     problem: &Problem<S>,
     forms: &[ContactForm<S>],
     moments: &[MomentForm<S>],
 ) -> bool {
     let turns_freely = |m: &MomentForm<S>| m.rolling == 0.0 && m.spinning == 0.0;
-    problem.systems.is_empty() && forms.iter().all(yields) && moments.iter().all(turns_freely)
+    problem.systems.is_empty() && forms.iter().all(is_compliant) && moments.iter().all(turns_freely)
 }
 
 /// Whether the impulses of a contact are functions of its velocities.
-fn yields<S: Space>(form: &ContactForm<S>) -> bool {
+fn is_compliant<S: Space>(form: &ContactForm<S>) -> bool {
     let [c_n, c_t] = form.compliance;
     let slides = form.friction > 0.0 || form.cohesion > 0.0;
     let never_closes = form.shift_n == f64::INFINITY && form.cohesion == 0.0;

@@ -86,8 +86,8 @@ fn solve_with_all<S: Space>(
             return Ok(());
         }
         let (steps, forms) = (&s.workspace.solved.contact_steps, &s.workspace.forms);
-        let acts = |k: usize| steps[k].solution.unilateral_n + forms[k].tension > 0.0;
-        let found = detect::find_missed(network, &scene, &motion, acts);
+        let pushes = |k: usize| steps[k].solution.unilateral_n + forms[k].tension > 0.0;
+        let found = detect::find_missed(network, &scene, &motion, pushes);
         if found.is_empty() {
             return Ok(());
         }
